@@ -1,0 +1,127 @@
+// A thin shell: constant-strain triangles for the membrane, hinges for bending.
+//
+// Membrane: F = D_s D_m^-1 (3x2), C = F^T F, energy t A W(C) with a plane-stress law
+// (materials/plane_stress.hpp). Bending: E = 1/2 D 3 |e|^2 / (A1 + A2) (theta - theta0)^2 at every inner edge
+// e, theta the angle between the normals of its two triangles, theta0 that of the reference shape, D = E t^3
+// / (12 (1 - nu^2)). Source: Grinspun, Hirani, Desbrun and Schroeder 2003, Discrete Shells, eq. 2. Hinges
+// depend on the mesh: exact for bending along directions that the mesh resolves evenly, stiffer or softer by
+// tens of percent on skewed ones.
+//
+// Limits: thin (thickness below about the edge length), no transverse shear.
+// Lengths mm, stress Pa, energy nJ, force uN.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/types.hpp"
+#include "materials/plane_stress.hpp"
+
+namespace valsalva::structure {
+
+struct ShellMesh {
+  Points reference;  ///< the stress-free shape
+  std::vector<Triangle> triangles;
+  std::vector<double> thickness_mm;  ///< per node
+  std::vector<Vec3> fibre1, fibre2;  ///< per triangle, in the reference; empty: no fibres (isotropic)
+  std::vector<double>
+      stiffness_factor;  ///< per triangle: multiplies the law's matrix part and bending; empty: 1
+};
+
+struct Bending {
+  double modulus_Pa = 0;  ///< Young's modulus in bending; 0: membrane only
+  double poisson = 0.5;
+};
+
+/// One share of the work, for dividing it among MPI ranks: share `index` of `count`.
+struct Part {
+  int index = 0;
+  int count = 1;
+};
+
+struct ElementState {
+  double von_mises_Pa = 0;   ///< of the Cauchy stress in the plane
+  double stretch_major = 1;  ///< principal stretches in the plane
+  double stretch_minor = 1;
+  double exponent = 0;  ///< the largest Q of the law's exp(Q) here
+};
+
+class Shell {
+ public:
+  /// InputError names the triangle that is degenerate or the entry that has a wrong size or value.
+  Shell(ShellMesh mesh, std::shared_ptr<const materials::InvariantLaw> law, Bending bending);
+
+  int nodes() const { return static_cast<int>(mesh_.reference.size()); }
+  int elements() const { return static_cast<int>(mesh_.triangles.size()); }
+  int hinges() const { return static_cast<int>(hinges_.size()); }
+  const ShellMesh& mesh() const { return mesh_; }
+  double reference_area(int element) const { return elements_[element].area; }
+  double thickness(int element) const { return elements_[element].thickness; }
+  /// Lumped: a third of every adjacent triangle's mass.
+  std::vector<double> lumped_mass(double density_g_per_mm3) const;
+  /// A third of every adjacent triangle's reference area.
+  std::vector<double> lumped_area() const;
+
+  /// f[offset + a] += force on node a of the body, whose positions are x[offset + a]; returns the energy.
+  /// Independent of the number of threads. A share of the work gives a share of force and energy.
+  double add_forces(const Points& x, Points& f, int offset = 0, Part part = {}) const;
+
+  /// out += K direction, K the tangent at x made positive semi-definite: the material tangent is so by
+  /// construction, the negative eigenvalue of the geometric 2x2 stress is cut off, hinges by Gauss-Newton.
+  void add_tangent_product(const Points& x, const Points& direction, Points& out) const;
+
+  /// Absolute row sums of that tangent (per node, summed over its three rows' largest), added to bound[offset
+  /// + a].
+  void add_stiffness_bound(const Points& x, std::vector<double>& bound, int offset = 0) const;
+
+  ElementState element_state(const Points& x, int element, int offset = 0) const;
+  /// The largest exponent Q over all elements; the law's exponential is continued beyond Q = 6.
+  double max_exponent(const Points& x, int offset = 0) const;
+  /// Signed angle of hinge h at x, and in the reference.
+  double hinge_angle(const Points& x, int hinge, int offset = 0) const;
+
+ private:
+  friend class ShellTangent;
+  struct Element {
+    double area, thickness, factor;
+    Eigen::Matrix2d inverse_edges;  // D_m^-1 in the element's own basis
+    materials::PlaneFibres fibres;
+  };
+  struct Hinge {
+    std::array<int, 4> nodes;      // edge 0-1, opposite 2 and 3
+    double rest_angle, stiffness;  // stiffness = 3 D |e|^2 / (A1 + A2)
+  };
+  double element_forces(const Points& x, int offset, int element, std::array<Vec3, 3>& f) const;
+  double hinge_forces(const Points& x, int offset, int hinge, std::array<Vec3, 4>& f) const;
+  void build_elements();
+  void build_hinges(const Bending& bending);
+  void build_gather();
+
+  ShellMesh mesh_;
+  std::shared_ptr<const materials::InvariantLaw> law_;
+  std::vector<Element> elements_;
+  std::vector<Hinge> hinges_;
+  std::vector<int> gather_start_,
+      gather_entry_;  // node -> (element corner | hinge corner) slots, fixed order
+};
+
+/// The tangent in two phases, for power iteration: update once, apply many times.
+class ShellTangent {
+ public:
+  explicit ShellTangent(const Shell& shell, Part part = {});
+  void update(const Points& x, int offset = 0);
+  /// out[offset + a] += (K direction)[a]
+  void apply(const Points& direction, Points& out, int offset = 0) const;
+  /// Absolute row sums: per node, the largest of its three rows; summed over elements (an upper bound).
+  void add_row_sums(std::vector<double>& bound, int offset = 0) const;
+
+ private:
+  using ElementMatrix = Eigen::Matrix<double, 9, 9>;
+  using HingeVector = Eigen::Matrix<double, 12, 1>;
+  const Shell& shell_;
+  Part part_;
+  std::vector<ElementMatrix> element_;
+  std::vector<HingeVector> hinge_;  // sqrt(k) grad(theta)
+};
+
+}  // namespace valsalva::structure
