@@ -1,7 +1,8 @@
-// A case file: which bodies, fluid, contact and boundaries exist, and the values that differ from the defaults.
+// A case file: which bodies, fluid, contact and boundaries exist, and the values that differ from the
+// defaults.
 //
-// Unknown or misspelt keys, wrong types, non-finite and out-of-range values are InputErrors that name the file,
-// the line, the key, what was found, what is expected, and a suggestion.
+// Unknown or misspelt keys, wrong types, non-finite and out-of-range values are InputErrors that name the
+// file, the line, the key, what was found, what is expected, and a suggestion.
 #pragma once
 
 #include <filesystem>
@@ -18,8 +19,8 @@ class Case {
   /// overrides: "table.key=value" as given to --set.
   static Case load(const std::filesystem::path& file, const Schema& schema, Fidelity fidelity,
                    const std::vector<std::string>& overrides);
-  static Case from_text(const std::string& text, const std::string& label, const Schema& schema, Fidelity fidelity,
-                        const std::vector<std::string>& overrides = {});
+  static Case from_text(const std::string& text, const std::string& label, const Schema& schema,
+                        Fidelity fidelity, const std::vector<std::string>& overrides = {});
 
   bool boolean(const std::string& key) const;
   std::int64_t integer(const std::string& key) const;

@@ -26,14 +26,13 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-template <ExitCode code>
+template <ExitCode kind>
 class ErrorOf : public Error {
  public:
-  explicit ErrorOf(const std::string& message) : Error(code, message) {}
+  explicit ErrorOf(const std::string& message) : Error(kind, message) {}
   template <class... Args>
-    requires(sizeof...(Args) > 0)
-  explicit ErrorOf(fmt::format_string<Args...> format, Args&&... args)
-      : Error(code, fmt::format(format, std::forward<Args>(args)...)) {}
+  requires(sizeof...(Args) > 0) explicit ErrorOf(fmt::format_string<Args...> format, Args&&... args)
+      : Error(kind, fmt::format(format, std::forward<Args>(args)...)) {}
 };
 
 using InputError = ErrorOf<ExitCode::input>;

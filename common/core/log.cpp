@@ -34,8 +34,14 @@ void configure(bool quiet, bool speaks) {
   err().set_level(speaks ? spdlog::level::info : spdlog::level::off);
 }
 
-void info(const std::string& line) { out().info(line); }
-void warn(const std::string& line) { err().warn(line); }
-void error(const std::string& line) { err().error(line); }
+void info(const std::string& line) {
+  out().info(line);
+}
+void warn(const std::string& line) {
+  err().warn(line);
+}
+void error(const std::string& line) {
+  err().error(line);
+}
 
 }  // namespace valsalva::log

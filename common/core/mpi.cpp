@@ -16,7 +16,9 @@ Session::Session(int& argc, char**& argv) {
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
 }
 
-Session::~Session() { MPI_Finalize(); }
+Session::~Session() {
+  MPI_Finalize();
+}
 
 int rank(MPI_Comm comm) {
   int value = 0;
@@ -30,10 +32,18 @@ int size(MPI_Comm comm) {
   return value;
 }
 
-double sum(MPI_Comm comm, double value) { return reduce(comm, value, MPI_SUM); }
-double max(MPI_Comm comm, double value) { return reduce(comm, value, MPI_MAX); }
-double min(MPI_Comm comm, double value) { return reduce(comm, value, MPI_MIN); }
-bool any(MPI_Comm comm, bool value) { return reduce(comm, value ? 1.0 : 0.0, MPI_MAX) > 0.5; }
+double sum(MPI_Comm comm, double value) {
+  return reduce(comm, value, MPI_SUM);
+}
+double max(MPI_Comm comm, double value) {
+  return reduce(comm, value, MPI_MAX);
+}
+double min(MPI_Comm comm, double value) {
+  return reduce(comm, value, MPI_MIN);
+}
+bool any(MPI_Comm comm, bool value) {
+  return reduce(comm, value ? 1.0 : 0.0, MPI_MAX) > 0.5;
+}
 
 void sum_in_place(MPI_Comm comm, double* values, std::size_t count) {
   if (size(comm) == 1) return;

@@ -19,13 +19,19 @@ std::string duration(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
-double seconds_between(auto from, auto to) { return std::chrono::duration<double>(to - from).count(); }
+double seconds_between(auto from, auto to) {
+  return std::chrono::duration<double>(to - from).count();
+}
 
 }  // namespace
 
 Progress::Progress(std::string label, double total, bool speaks)
-    : label_(std::move(label)), total_(total), speaks_(speaks), terminal_(isatty(STDOUT_FILENO) == 1),
-      start_(Clock::now()), last_(start_) {}
+    : label_(std::move(label)),
+      total_(total),
+      speaks_(speaks),
+      terminal_(isatty(STDOUT_FILENO) == 1),
+      start_(Clock::now()),
+      last_(start_) {}
 
 Progress::~Progress() {
   if (drawn_ && terminal_) std::fputc('\n', stdout);
@@ -42,7 +48,8 @@ void Progress::update(double done, const std::string& note) {
 void Progress::draw(double done, const std::string& note, double elapsed_s) {
   const double fraction = total_ > 0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
   const double here = done - started_at_;
-  const std::string left = here > 0 ? duration(elapsed_s * std::max(0.0, total_ - done) / here) + " left" : "";
+  const std::string left =
+      here > 0 ? duration(elapsed_s * std::max(0.0, total_ - done) / here) + " left" : "";
   const std::string line = fmt::format("{} {:5.1f} %  {}  {}", label_, 100 * fraction, left, note);
   if (terminal_) {
     constexpr int width = 24;

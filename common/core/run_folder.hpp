@@ -31,8 +31,8 @@ struct Summary {
   std::string parameters_sha256;
   std::map<std::string, double> metrics;
   std::map<std::string, Check> checks;
-  std::map<std::string, std::string> notes;   ///< what the reader must know: assumptions, model choices
-  nlohmann::json extra;                       ///< further data for the report (curves, accuracy band, message)
+  std::map<std::string, std::string> notes;  ///< what the reader must know: assumptions, model choices
+  nlohmann::json extra;                      ///< further data for the report (curves, accuracy band, message)
   nlohmann::json to_json() const;
 };
 

@@ -23,7 +23,8 @@
 namespace valsalva {
 
 /// The value of one parameter. Paths are text.
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
+using Value =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
 
 /// A default that may depend on the fidelity level.
 template <class T>
@@ -42,18 +43,24 @@ struct Range {
   double high = std::numeric_limits<double>::infinity();
   bool low_excluded = false;  ///< (low, high] instead of [low, high]
 };
-inline Range positive() { return {0, std::numeric_limits<double>::infinity(), true}; }
-inline Range not_negative() { return {0, std::numeric_limits<double>::infinity(), false}; }
-inline Range unlimited() { return {}; }
+inline Range positive() {
+  return {0, std::numeric_limits<double>::infinity(), true};
+}
+inline Range not_negative() {
+  return {0, std::numeric_limits<double>::infinity(), false};
+}
+inline Range unlimited() {
+  return {};
+}
 
 struct Parameter {
   enum class Kind { boolean, integer, real, text, choice, reals, texts };
   std::string key;
   Kind kind;
-  ByFidelity<Value> standard;             ///< the default
-  Range range;                            ///< of numbers
-  std::vector<std::string> choices;       ///< of Kind::choice
-  std::size_t length = 0;                 ///< of Kind::reals; 0: any
+  ByFidelity<Value> standard;        ///< the default
+  Range range;                       ///< of numbers
+  std::vector<std::string> choices;  ///< of Kind::choice
+  std::size_t length = 0;            ///< of Kind::reals; 0: any
   std::string doc;
 };
 
@@ -73,7 +80,8 @@ class Schema {
   Schema& text(std::string key, std::string standard, std::string doc);
   Schema& choice(std::string key, std::string standard, std::vector<std::string> choices, std::string doc);
   /// length 0: any number of entries.
-  Schema& reals(std::string key, std::vector<double> standard, std::size_t length, Range range, std::string doc);
+  Schema& reals(std::string key, std::vector<double> standard, std::size_t length, Range range,
+                std::string doc);
   Schema& texts(std::string key, std::vector<std::string> standard, std::string doc);
 
   const Parameter* find(const std::string& key) const;

@@ -1,7 +1,8 @@
 // What every stage's executable shares: command line, validation, exit codes, summary, interruption.
 //
 //   int main(int argc, char** argv) {
-//     return valsalva::stage_main(argc, argv, {"crimp", "Closes the device into its sheath", "crimp CASE.toml",
+//     return valsalva::stage_main(argc, argv, {"crimp", "Closes the device into its sheath", "crimp
+//     CASE.toml",
 //                                             declare_all, {"device", "crimp", "contact"}, run, estimate});
 //   }
 #pragma once
@@ -25,13 +26,13 @@ struct Estimate {
 struct StageContext {
   const Case& scene;
   RunFolder run;
-  Summary summary;                                    ///< the stage fills metrics, checks, inputs, notes, extra
-  std::optional<std::filesystem::path> from;          ///< --from
-  bool resume = false;                                ///< --resume
-  std::optional<long> steps;                          ///< --steps: stop after so many, with a state
+  Summary summary;                            ///< the stage fills metrics, checks, inputs, notes, extra
+  std::optional<std::filesystem::path> from;  ///< --from
+  bool resume = false;                        ///< --resume
+  std::optional<long> steps;                  ///< --steps: stop after so many, with a state
   bool quiet = false;
   MPI_Comm comm = MPI_COMM_WORLD;
-  bool speaks = true;                                 ///< rank 0 and not quiet
+  bool speaks = true;  ///< rank 0 and not quiet
 
   /// The parent's newest state: --from where given, else runs/<case>/<stage>/ beside this stage's own folder.
   /// InputError when there is none (it says which command makes it).
@@ -43,12 +44,12 @@ struct StageContext {
 struct Stage {
   std::string name;
   std::string purpose;
-  std::string sample;                                  ///< sample runs, printed by --help
+  std::string sample;  ///< sample runs, printed by --help
   std::function<void(Schema&)> declare;
-  std::set<std::string> tables;                        ///< the tables it depends on, for the parameter digest
+  std::set<std::string> tables;  ///< the tables it depends on, for the parameter digest
   std::function<void(StageContext&)> run;
   std::function<Estimate(const Case&, int ranks)> estimate;
-  std::function<void(const Case&)> check;              ///< further validation before anything is written; may be empty
+  std::function<void(const Case&)> check;  ///< further validation before anything is written; may be empty
 };
 
 int stage_main(int argc, char** argv, const Stage& stage);

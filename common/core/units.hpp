@@ -10,8 +10,8 @@ inline constexpr double pa_per_MPa = 1e6;
 inline constexpr double pa_per_GPa = 1e9;
 inline constexpr double pa_per_dyn_cm2 = 0.1;
 inline constexpr double mm3_per_mL = 1e3;
-inline constexpr double uN_per_N = 1e6;          ///< micronewton in one newton
-inline constexpr double mm_per_Fr = 1.0 / 3.0;   ///< the French catheter scale
+inline constexpr double uN_per_N = 1e6;         ///< micronewton in one newton
+inline constexpr double mm_per_Fr = 1.0 / 3.0;  ///< the French catheter scale
 inline constexpr double mm2_per_cm2 = 100.0;
 inline constexpr double s_per_min = 60.0;
 

@@ -1,0 +1,13 @@
+// The declarations of every case-file table, one source file a table. All stages know all tables, so that one
+// misspelt key anywhere is an error everywhere.
+#pragma once
+
+#include "core/schema.hpp"
+
+namespace valsalva {
+
+void declare_all(Schema& schema);
+
+void declare_case(Schema& schema);
+
+}  // namespace valsalva
