@@ -9,5 +9,7 @@ namespace valsalva {
 void declare_all(Schema& schema);
 
 void declare_case(Schema& schema);
+void declare_mesh(Schema& schema);
+void declare_native(Schema& schema);
 
 }  // namespace valsalva
