@@ -1,7 +1,8 @@
 // Plane stress of an incompressible law: C33 = 1/det C of the in-plane 2x2 C, hence I1 = tr C + 1/det C and
 //   S = 2 W1 (1 - C^-1/det C) + sum_i 2 W4i a_i a_i,      D = 4 d2W/dC2.
 // D is positive semi-definite where W1, W11, W4i, W44i >= 0 and W14i = 0, because 1/det C is convex.
-// det C is floored at 1e-4 (a stretch of 0.01), below which a triangle counts as inverted.
+// Below det C = 1e-4 (a stretch of 0.1 both ways) 1/det C is continued by its tangent: finite and still
+// repelling.
 #pragma once
 
 #include <Eigen/Core>

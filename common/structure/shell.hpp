@@ -95,14 +95,11 @@ class Shell {
   double hinge_forces(const Points& x, int offset, int hinge, std::array<Vec3, 4>& f) const;
   void build_elements();
   void build_hinges(const Bending& bending);
-  void build_gather();
 
   ShellMesh mesh_;
   std::shared_ptr<const materials::InvariantLaw> law_;
   std::vector<Element> elements_;
   std::vector<Hinge> hinges_;
-  std::vector<int> gather_start_,
-      gather_entry_;  // node -> (element corner | hinge corner) slots, fixed order
 };
 
 /// The tangent in two phases, for power iteration: update once, apply many times.

@@ -16,7 +16,7 @@ void StiffnessBound::reset(std::size_t nodes, std::size_t rotational_nodes) {
   rotation.assign(rotational_nodes, 0.0);
 }
 
-const Body& System::add_body(const std::string& name, const Points& x, const std::vector<double>& mass) {
+Body System::add_body(const std::string& name, const Points& x, const std::vector<double>& mass) {
   if (has_body(name))
     throw InputError("structure: there are two bodies called '{}'; give each its own name", name);
   VALSALVA_ASSERT(x.size() == mass.size());
@@ -36,10 +36,9 @@ const Body& System::add_body(const std::string& name, const Points& x, const std
   return bodies_.back();
 }
 
-const Body& System::add_rotational_body(const std::string& name, const Points& x,
-                                        const std::vector<double>& mass,
-                                        const std::vector<Eigen::Quaterniond>& rotation,
-                                        const std::vector<double>& inertia) {
+Body System::add_rotational_body(const std::string& name, const Points& x, const std::vector<double>& mass,
+                                 const std::vector<Eigen::Quaterniond>& rotation,
+                                 const std::vector<double>& inertia) {
   VALSALVA_ASSERT(x.size() == rotation.size() && x.size() == inertia.size());
   for (std::size_t a = 0; a < inertia.size(); ++a)
     if (!(inertia[a] > 0) || !std::isfinite(inertia[a]))

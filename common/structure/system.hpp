@@ -60,11 +60,11 @@ using Snapshot = std::map<std::string, std::vector<double>>;
 class System {
  public:
   /// mass: g, one a node, all positive. InputError names the body and node otherwise.
-  const Body& add_body(const std::string& name, const Points& x, const std::vector<double>& mass);
+  Body add_body(const std::string& name, const Points& x, const std::vector<double>& mass);
   /// inertia: g mm2, one a node, all positive.
-  const Body& add_rotational_body(const std::string& name, const Points& x, const std::vector<double>& mass,
-                                  const std::vector<Eigen::Quaterniond>& rotation,
-                                  const std::vector<double>& inertia);
+  Body add_rotational_body(const std::string& name, const Points& x, const std::vector<double>& mass,
+                           const std::vector<Eigen::Quaterniond>& rotation,
+                           const std::vector<double>& inertia);
 
   const std::vector<Body>& bodies() const { return bodies_; }
   bool has_body(const std::string& name) const;

@@ -1,0 +1,38 @@
+// Modified Holzapfel-Gasser-Ogden law: exponential neo-Hookean matrix and up to two fibre families that bear
+// no compression,
+//   W = C10 {exp[C01 (I1 - 3)] - 1} + k1/(2 k2) sum_i {exp[k2 (max(I4_i, 1) - 1)^2] - 1}.
+// Source: Brown et al. 2022 (tavr-ifed), eq. 3 and table 1, after Murdock et al. 2018.
+// Small-strain Young's modulus of the matrix: 6 C10 C01. Beyond an exponent of 6: capped_exponential.hpp.
+#pragma once
+
+#include "materials/invariant_law.hpp"
+
+namespace valsalva::materials {
+
+struct HgoParameters {
+  double c10_Pa = 0;
+  double c01 = 0;
+  double k1_Pa = 0;
+  double k2 = 0;
+};
+
+/// Table 1 of the source: healthy native leaflets (fibres at +-26.21 degrees from commissure to commissure).
+inline constexpr HgoParameters native_leaflet_healthy{146.3, 26.21, 7072.0, 147.5};
+inline constexpr double native_leaflet_fibre_angle_deg = 26.21;
+/// Table 1 of the source: glutaraldehyde-fixed porcine pericardium (+-7.81 degrees from the mean direction).
+inline constexpr HgoParameters porcine_pericardium{15140.0, 13.48, 152600.0, 107.3};
+inline constexpr double porcine_pericardium_fibre_angle_deg = 7.81;
+
+class Hgo : public InvariantLaw {
+ public:
+  /// InputError when C10, C01 or k2 is not positive, or k1 negative.
+  explicit Hgo(const HgoParameters& parameters);
+  std::string name() const override { return "hgo"; }
+  InvariantResponse respond(double i1, const std::array<double, 2>& i4, double factor) const override;
+  double matrix_modulus_Pa() const { return 6 * p_.c10_Pa * p_.c01; }
+
+ private:
+  HgoParameters p_;
+};
+
+}  // namespace valsalva::materials

@@ -1,0 +1,19 @@
+// Incompressible neo-Hookean law: W = mu/2 (I1 - 3). Small-strain Young's modulus 3 mu. Source: Rivlin 1948.
+#pragma once
+
+#include "materials/invariant_law.hpp"
+
+namespace valsalva::materials {
+
+class NeoHookean : public InvariantLaw {
+ public:
+  /// InputError when the shear modulus is not positive.
+  explicit NeoHookean(double shear_modulus_Pa);
+  std::string name() const override { return "neo-hookean"; }
+  InvariantResponse respond(double i1, const std::array<double, 2>& i4, double factor) const override;
+
+ private:
+  double mu_;
+};
+
+}  // namespace valsalva::materials

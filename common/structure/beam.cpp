@@ -1,0 +1,207 @@
+#include "structure/beam.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace valsalva::structure {
+
+std::vector<Vec3> radial_directions(const Points& reference, const std::vector<Edge>& elements) {
+  std::vector<Vec3> axes;
+  axes.reserve(elements.size());
+  for (const Edge& e : elements) {
+    Vec3 radial = 0.5 * (reference[e[0]] + reference[e[1]]);
+    radial.z() = 0;
+    axes.push_back(radial.norm() > 1e-9 ? Vec3(radial.normalized()) : Vec3(Vec3::UnitX()));
+  }
+  return axes;
+}
+
+double torsion_constant(double width_mm, double depth_mm) {
+  const double b = std::max(width_mm, depth_mm), d = std::min(width_mm, depth_mm);
+  return b * d * d * d * (1.0 / 3 - 0.21 * d / b * (1 - std::pow(d / b, 4) / 12));
+}
+
+// What the angles are made of: the chord p, the triads of both ends, and the sines of the angles.
+struct BeamNetwork::Sines {
+  Vec3 p;
+  double length;
+  Mat3 a, b;
+  double az, ay, bz, by, twist;
+};
+
+namespace {
+
+double arcsine(double s) {
+  return std::asin(std::clamp(s, -1.0, 1.0));
+}
+
+// d asin(s)/ds, kept finite where an end stands square to the chord.
+double arcsine_slope(double s) {
+  return 1 / std::sqrt(std::max(1 - s * s, 1e-6));
+}
+
+}  // namespace
+
+BeamNetwork::Sines BeamNetwork::sines(const Points& x, const std::vector<Eigen::Quaterniond>& rotation,
+                                      int element, int offset, int rotation_offset) const {
+  const Edge& e = mesh_.elements[element];
+  const Mat3& axes = elements_[element].axes;
+  Sines s;
+  const Vec3 chord = x[offset + e[1]] - x[offset + e[0]];
+  s.length = chord.norm();
+  s.p = chord / s.length;
+  s.a = rotation[rotation_offset + e[0]].toRotationMatrix() * axes;
+  s.b = rotation[rotation_offset + e[1]].toRotationMatrix() * axes;
+  s.az = -s.p.dot(s.a.col(1));
+  s.ay = s.p.dot(s.a.col(2));
+  s.bz = -s.p.dot(s.b.col(1));
+  s.by = s.p.dot(s.b.col(2));
+  s.twist = 0.5 * (s.a.col(2).dot(s.b.col(1)) - s.a.col(1).dot(s.b.col(2)));
+  return s;
+}
+
+BeamNetwork::Angles BeamNetwork::angles_of(const Sines& s) {
+  return {s.length, arcsine(s.az), arcsine(s.ay), arcsine(s.bz), arcsine(s.by), arcsine(s.twist)};
+}
+
+BeamNetwork::BeamNetwork(BeamMesh mesh, const BeamMaterial& material) : mesh_(std::move(mesh)) {
+  const std::size_t count = mesh_.elements.size();
+  VALSALVA_ASSERT(mesh_.width_mm.size() == count && mesh_.depth_mm.size() == count &&
+                  mesh_.depth_axis.size() == count);
+  if (!(material.young_Pa > 0) || !(material.density_g_per_mm3 > 0) || !(material.poisson > -1) ||
+      !(material.poisson <= 0.5))
+    throw InputError(
+        "beams: Young's modulus {} Pa, density {} g/mm3, Poisson's ratio {}; expected positive, "
+        "positive, and -1 to 0.5",
+        material.young_Pa, material.density_g_per_mm3, material.poisson);
+  const double shear = material.young_Pa / (2 * (1 + material.poisson));
+  const std::vector<Eigen::Quaterniond> identity(mesh_.reference.size(), Eigen::Quaterniond::Identity());
+  elements_.resize(count);
+  double total_length = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Edge& e = mesh_.elements[i];
+    for (int a : e)
+      if (a < 0 || a >= nodes())
+        throw InputError("beams: element {} refers to node {}; the mesh has {} nodes", i, a, nodes());
+    const double width = mesh_.width_mm[i], depth = mesh_.depth_mm[i];
+    if (!(width > 0) || !(depth > 0) || !std::isfinite(width * depth))
+      throw InputError("beams: section of element {} is {} x {} mm; expected positive", i, width, depth);
+    Element& element = elements_[i];
+    const Vec3 chord = mesh_.reference[e[1]] - mesh_.reference[e[0]];
+    element.length = chord.norm();
+    if (!(element.length > 1e-9))
+      throw InputError("beams: element {} (nodes {} and {}) has no length; merge its nodes", i, e[0], e[1]);
+    const Vec3 along = chord / element.length;
+    Vec3 depth_axis = mesh_.depth_axis[i] - mesh_.depth_axis[i].dot(along) * along;
+    if (!(depth_axis.norm() > 1e-3))
+      throw InputError("beams: the depth axis of element {} is parallel to it; give another direction", i);
+    depth_axis.normalize();
+    element.axes << along, depth_axis.cross(along), depth_axis;
+    element.axial = material.young_Pa * width * depth / element.length;
+    element.bend_z = material.young_Pa * depth * width * width * width / 12 / element.length;
+    element.bend_y = material.young_Pa * width * depth * depth * depth / 12 / element.length;
+    element.torsion = shear * torsion_constant(width, depth) / element.length;
+    element.mass = material.density_g_per_mm3 * width * depth * element.length;
+    element.rest = angles_of(sines(mesh_.reference, identity, static_cast<int>(i), 0, 0));
+    total_length += element.length;
+  }
+  coupling_length_ = count ? total_length / static_cast<double>(count) : 1;
+}
+
+std::vector<double> BeamNetwork::lumped_mass() const {
+  std::vector<double> mass(nodes(), 0.0);
+  for (int i = 0; i < elements(); ++i)
+    for (int a : mesh_.elements[i]) mass[a] += 0.5 * elements_[i].mass;
+  return mass;
+}
+
+std::vector<double> BeamNetwork::lumped_inertia() const {
+  std::vector<double> inertia(nodes(), 0.0);
+  for (int i = 0; i < elements(); ++i) {
+    const double length = elements_[i].length;
+    const double section = mesh_.width_mm[i] * mesh_.width_mm[i] + mesh_.depth_mm[i] * mesh_.depth_mm[i];
+    const double gyration2 = std::max(length * length, section) / 12;
+    for (int a : mesh_.elements[i]) inertia[a] += 0.5 * elements_[i].mass * gyration2;
+  }
+  return inertia;
+}
+
+double BeamNetwork::add_forces(const Points& x, const std::vector<Eigen::Quaterniond>& rotation,
+                               Points& force, Points& moment, int offset, int rotation_offset) const {
+  double energy = 0;
+  for (int i = 0; i < elements(); ++i) {
+    const Edge& e = mesh_.elements[i];
+    const Element& k = elements_[i];
+    const Sines s = sines(x, rotation, i, offset, rotation_offset);
+    const Angles now = angles_of(s);
+    const double stretch = now.length - k.rest.length;
+    const double az = now.az - k.rest.az, bz = now.bz - k.rest.bz;
+    const double ay = now.ay - k.rest.ay, by = now.by - k.rest.by;
+    const double twist = now.twist - k.rest.twist;
+    energy += 0.5 * k.axial * stretch * stretch + 2 * k.bend_z * (az * az + az * bz + bz * bz) +
+              2 * k.bend_y * (ay * ay + ay * by + by * by) + 0.5 * k.torsion * twist * twist;
+    // Derivatives of the energy with respect to the sines.
+    const double daz = 2 * k.bend_z * (2 * az + bz) * arcsine_slope(s.az);
+    const double dbz = 2 * k.bend_z * (2 * bz + az) * arcsine_slope(s.bz);
+    const double day = 2 * k.bend_y * (2 * ay + by) * arcsine_slope(s.ay);
+    const double dby = 2 * k.bend_y * (2 * by + ay) * arcsine_slope(s.by);
+    const double dtwist = k.torsion * twist * arcsine_slope(s.twist);
+    // dU/dp, without the part along p, divided by l: dU/dx_b.
+    const Vec3 dp = -daz * s.a.col(1) + day * s.a.col(2) - dbz * s.b.col(1) + dby * s.b.col(2);
+    const Vec3 dx = k.axial * stretch * s.p + (dp - dp.dot(s.p) * s.p) / s.length;
+    force[offset + e[0]] += dx;
+    force[offset + e[1]] -= dx;
+    // d(p . t)/d(rotation of t) = t x p; the twist likewise.
+    const Vec3 ma = -daz * s.a.col(1).cross(s.p) + day * s.a.col(2).cross(s.p) +
+                    0.5 * dtwist * (s.a.col(2).cross(s.b.col(1)) - s.a.col(1).cross(s.b.col(2)));
+    const Vec3 mb = -dbz * s.b.col(1).cross(s.p) + dby * s.b.col(2).cross(s.p) +
+                    0.5 * dtwist * (s.b.col(1).cross(s.a.col(2)) - s.b.col(2).cross(s.a.col(1)));
+    moment[rotation_offset + e[0]] -= ma;
+    moment[rotation_offset + e[1]] -= mb;
+  }
+  return energy;
+}
+
+void BeamNetwork::add_stiffness_bound(const Points& x, StiffnessBound& out, int offset,
+                                      int rotation_offset) const {
+  // Absolute row sums of the linear element's matrix, a rotation counted as an arc of coupling_length_; plus
+  // the geometric stiffness of the axial force.
+  for (int i = 0; i < elements(); ++i) {
+    const Edge& e = mesh_.elements[i];
+    const Element& k = elements_[i];
+    const double bend = std::max(k.bend_z, k.bend_y);
+    const double length = (x[offset + e[1]] - x[offset + e[0]]).norm();
+    const double tension = k.axial * std::abs(length - k.length) / length;
+    const double translation = 2 * std::max(k.axial, 12 * bend / (k.length * k.length)) + 2 * tension +
+                               12 * bend / (k.length * coupling_length_);
+    const double rotation = std::max(6 * bend, 2 * k.torsion) + 12 * bend / k.length * coupling_length_;
+    for (int a : e) {
+      out.translation[offset + a] += translation;
+      out.rotation[rotation_offset + a] += rotation;
+    }
+  }
+}
+
+BeamState BeamNetwork::element_state(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, int i,
+                                     int offset, int rotation_offset) const {
+  const Element& k = elements_[i];
+  const Angles now = angles_of(sines(x, rotation, i, offset, rotation_offset));
+  const double az = now.az - k.rest.az, bz = now.bz - k.rest.bz;
+  const double ay = now.ay - k.rest.ay, by = now.by - k.rest.by;
+  // End curvatures of a cubic: (4 theta_a + 2 theta_b)/L.
+  const auto curvature = [&](double near, double far) { return std::abs(4 * near + 2 * far) / k.length; };
+  const double width = 0.5 * mesh_.width_mm[i], depth = 0.5 * mesh_.depth_mm[i];
+  const double bending = std::max(curvature(az, bz) * width + curvature(ay, by) * depth,
+                                  curvature(bz, az) * width + curvature(by, ay) * depth);
+  const double axial = (now.length - k.rest.length) / k.length;
+  return {axial, std::abs(axial) + bending};
+}
+
+BeamTerm::BeamTerm(std::shared_ptr<const BeamNetwork> network, const Body& body)
+    : network_(std::move(network)), body_(body) {
+  VALSALVA_ASSERT(body_.rotational() && body_.count == network_->nodes());
+}
+
+}  // namespace valsalva::structure

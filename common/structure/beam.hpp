@@ -1,0 +1,113 @@
+// A network of straight elastic beams with rectangular section: nodes with positions and rotations.
+//
+// Corotational energy of an element of reference length L between the nodes a and b. With the chord p = (x_b
+// - x_a)/l and the nodal triads t_i = R E_i (E_1 along the reference chord, E_2 along the section's width,
+// E_3 its depth),
+//   theta_z = -asin(p . t_2),  theta_y = asin(p . t_3) at each end,  phi = asin((t^a_3 . t^b_2 - t^a_2 .
+//   t^b_3)/2), U = EA/(2L) (l - L)^2 + sum_{z,y} 2 EI/L (theta_a^2 + theta_a theta_b + theta_b^2) + GJ/(2L)
+//   phi^2,
+// each angle minus its value in the reference. Exact under rigid motion; small strain; end rotations below 90
+// degrees to the chord, twist below 90 degrees an element. Forces and moments are the exact gradient. A beam
+// in its reference shape with identity rotations has exactly zero force. After Crisfield 1990 (A consistent
+// corotational formulation for nonlinear 3D beam elements), sections 2 and 3.
+//
+// Section: width b along E_2 (circumferential), depth d along E_3 (radial):
+//   I_z = d b^3/12 (bending along the width), I_y = b d^3/12, J = b d^3 (1/3 - 0.21 d/b (1 - d^4/(12 b^4))),
+//   b >= d.
+// Lengths mm, moduli Pa, forces uN, moments uN mm, energy nJ.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "structure/force_term.hpp"
+
+namespace valsalva::structure {
+
+struct BeamMesh {
+  Points reference;
+  std::vector<Edge> elements;
+  std::vector<double> width_mm;  ///< per element
+  std::vector<double> depth_mm;  ///< per element
+  std::vector<Vec3> depth_axis;  ///< per element: the direction of the depth in the reference; any that is
+                                 ///< not parallel to the element
+};
+
+struct BeamMaterial {
+  double young_Pa = 0;
+  double poisson = 0.3;
+  double density_g_per_mm3 = 0;
+};
+
+/// The direction away from the z axis at the middle of every element: the depth axis of a stent's struts.
+std::vector<Vec3> radial_directions(const Points& reference, const std::vector<Edge>& elements);
+
+/// Torsion constant of a rectangle, mm4 (Timoshenko and Goodier, within 0.5 %).
+double torsion_constant(double width_mm, double depth_mm);
+
+struct BeamState {
+  double axial_strain = 0;
+  double max_strain = 0;  ///< axial and bending at the worst corner
+};
+
+class BeamNetwork {
+ public:
+  /// InputError names the element that has no length or a wrong section.
+  BeamNetwork(BeamMesh mesh, const BeamMaterial& material);
+  int nodes() const { return static_cast<int>(mesh_.reference.size()); }
+  int elements() const { return static_cast<int>(mesh_.elements.size()); }
+  const BeamMesh& mesh() const { return mesh_; }
+  std::vector<double> lumped_mass() const;
+  /// Half the mass of every adjacent element times L^2/12 or the section's gyration, whichever is larger.
+  std::vector<double> lumped_inertia() const;
+
+  /// Positions x[offset + a], rotations rotation[rotation_offset + a]; returns the energy.
+  double add_forces(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, Points& force,
+                    Points& moment, int offset = 0, int rotation_offset = 0) const;
+  void add_stiffness_bound(const Points& x, StiffnessBound& out, int offset = 0,
+                           int rotation_offset = 0) const;
+  BeamState element_state(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, int element,
+                          int offset = 0, int rotation_offset = 0) const;
+
+ private:
+  struct Angles {  // of the two ends about the section's axes, and the twist
+    double length;
+    double az, ay, bz, by, twist;
+  };
+  struct Element {
+    double length;
+    Mat3 axes;                              // columns E_1, E_2, E_3
+    double axial, bend_z, bend_y, torsion;  // EA/L, EI_z/L, EI_y/L, GJ/L
+    Angles rest;
+    double mass;
+  };
+  struct Sines;
+  Sines sines(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, int element, int offset,
+              int rotation_offset) const;
+  static Angles angles_of(const Sines& s);
+  BeamMesh mesh_;
+  std::vector<Element> elements_;
+  double coupling_length_;  // scales rotations against positions in the stiffness bound
+};
+
+/// A beam network as one force term of a System.
+class BeamTerm : public ForceTerm {
+ public:
+  BeamTerm(std::shared_ptr<const BeamNetwork> network, const Body& body);
+  std::string name() const override { return body_.name; }
+  double add_forces(const Configuration& now, Forces& out) const override {
+    return network_->add_forces(now.x, now.rotation, out.force, out.moment, body_.offset,
+                                body_.rotation_offset);
+  }
+  void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const override {
+    network_->add_stiffness_bound(now.x, out, body_.offset, body_.rotation_offset);
+  }
+  const BeamNetwork& network() const { return *network_; }
+
+ private:
+  std::shared_ptr<const BeamNetwork> network_;
+  Body body_;
+};
+
+}  // namespace valsalva::structure

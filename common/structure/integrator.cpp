@@ -1,0 +1,251 @@
+#include "structure/integrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/errors.hpp"
+
+namespace valsalva::structure {
+namespace {
+
+std::vector<double> flat(const Points& points) {
+  std::vector<double> values;
+  values.reserve(3 * points.size());
+  for (const Vec3& p : points) values.insert(values.end(), {p.x(), p.y(), p.z()});
+  return values;
+}
+
+const std::vector<double>& entry(const Snapshot& snapshot, const std::string& name, std::size_t size) {
+  const auto it = snapshot.find(name);
+  if (it == snapshot.end() || it->second.size() != size)
+    throw InputError(
+        "restart of the structure: entry '{}' has {} values; expected {}: the state belongs to another "
+        "scene; start the stage anew",
+        name, it == snapshot.end() ? 0 : it->second.size(), size);
+  return it->second;
+}
+
+void unflatten(const std::vector<double>& values, Points& points) {
+  for (std::size_t a = 0; a < points.size(); ++a)
+    points[a] = Vec3(values[3 * a], values[3 * a + 1], values[3 * a + 2]);
+}
+
+Eigen::Quaterniond exponential(const Vec3& turn) {
+  const double angle = turn.norm();
+  const double half = 0.5 * angle;
+  const double scale = angle > 1e-8 ? std::sin(half) / angle : 0.5;
+  return {std::cos(half), scale * turn.x(), scale * turn.y(), scale * turn.z()};
+}
+
+}  // namespace
+
+Integrator::Integrator(System& system, std::vector<std::shared_ptr<ForceTerm>> terms,
+                       const IntegratorSettings& settings)
+    : system_(system),
+      terms_(std::move(terms)),
+      settings_(settings),
+      mass_(system.masses()),
+      inertia_(system.inertias()),
+      stored_of_(terms_.size(), 0.0) {
+  if (!(settings_.step_s > 0) || !(settings_.safety > 0) || settings_.safety > 1 ||
+      settings_.scaling_interval < 1 || !(settings_.damping_per_s >= 0))
+    throw InputError(
+        "integrator: step {} s, safety {}, scaling interval {}, damping {} 1/s; expected positive, in "
+        "(0, 1], at least 1, not negative",
+        settings_.step_s, settings_.safety, settings_.scaling_interval, settings_.damping_per_s);
+}
+
+void Integrator::step() {
+  for (const auto& term : terms_) term->begin_step(system_.state, settings_.step_s);
+  if (steps_ % settings_.scaling_interval == 0) scale_masses();
+  evaluate_forces();
+  if (steps_ == 0) {
+    energies_.stored_at_start = energies_.stored;
+    energies_.kinetic_at_start = kinetic_energy();
+  }
+  move_nodes();
+  turn_nodes();
+  energies_.kinetic = kinetic_energy();
+  system_.state.time_s += settings_.step_s;
+  ++steps_;
+}
+
+void Integrator::evaluate_forces() {
+  forces_.reset(system_.nodes(), system_.rotational_nodes());
+  energies_.stored = 0;
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    stored_of_[i] = terms_[i]->add_forces(system_.state, forces_);
+    if (!std::isfinite(stored_of_[i]))
+      throw NumericalFailure(
+          "structure: the energy of '{}' is not finite at {} s; reduce the step or the load rate",
+          terms_[i]->name(), system_.state.time_s);
+    energies_.stored += stored_of_[i];
+  }
+}
+
+void Integrator::scale_masses() {
+  bound_.reset(system_.nodes(), system_.rotational_nodes());
+  for (const auto& term : terms_) term->add_stiffness_bound(system_.state, bound_);
+  const double reach = settings_.step_s / (2 * settings_.safety);
+  const double before = kinetic_energy();
+  for (std::size_t a = 0; a < mass_.size(); ++a) {
+    const double needed = reach * reach * bound_.translation[a];
+    const double own = system_.mass(static_cast<int>(a));
+    if (!settings_.mass_scaling && needed > own)
+      throw InputError(
+          "structure: a step of {} s is not stable for {}; expected at most {} s, or mass scaling",
+          settings_.step_s, system_.describe(static_cast<int>(a)),
+          settings_.step_s * std::sqrt(own / needed));
+    mass_[a] = std::max(own, needed);
+  }
+  for (std::size_t r = 0; r < inertia_.size(); ++r) {
+    const double needed = reach * reach * bound_.rotation[r];
+    const double own = system_.inertia(static_cast<int>(r));
+    if (!settings_.mass_scaling && needed > own)
+      throw InputError(
+          "structure: a step of {} s is not stable for the rotation of {}; expected at most {} s, or "
+          "mass scaling",
+          settings_.step_s, system_.describe(system_.node_of_rotation(static_cast<int>(r))),
+          settings_.step_s * std::sqrt(own / needed));
+    inertia_[r] = std::max(own, needed);
+  }
+  if (steps_ > 0) energies_.scaling_energy += kinetic_energy() - before;
+}
+
+void Integrator::move_nodes() {
+  Configuration& now = system_.state;
+  const double dt = settings_.step_s, damping = 0.5 * settings_.damping_per_s * dt;
+  for (std::size_t a = 0; a < mass_.size(); ++a) {
+    const int node = static_cast<int>(a);
+    if (system_.held(node)) {
+      energies_.support_work -= dt * forces_.force[a].dot(now.v[a]);
+    } else {
+      const Vec3 before = now.v[a];
+      now.v[a] = ((1 - damping) * before + dt / mass_[a] * forces_.force[a]) / (1 + damping);
+      energies_.damping_work += 2 * damping * mass_[a] * (0.5 * (before + now.v[a])).squaredNorm();
+    }
+    const double speed = now.v[a].norm();
+    if (!(speed < settings_.speed_limit_mm_per_s))
+      throw NumericalFailure(
+          "structure: {} at ({:.3f}, {:.3f}, {:.3f}) mm moves at {:.3g} mm/s at {:.6g} s (alarm at "
+          "{:.3g}); reduce the step or the load rate, or look at the contact there",
+          system_.describe(node), now.x[a].x(), now.x[a].y(), now.x[a].z(), speed, now.time_s,
+          settings_.speed_limit_mm_per_s);
+    now.x[a] += dt * now.v[a];
+  }
+}
+
+void Integrator::turn_nodes() {
+  Configuration& now = system_.state;
+  const double dt = settings_.step_s, damping = 0.5 * settings_.damping_per_s * dt;
+  for (std::size_t r = 0; r < inertia_.size(); ++r) {
+    const int node = system_.node_of_rotation(static_cast<int>(r));
+    if (system_.held(node)) {
+      energies_.support_work -= dt * forces_.moment[r].dot(now.angular_velocity[r]);
+    } else {
+      const Vec3 before = now.angular_velocity[r];
+      now.angular_velocity[r] =
+          ((1 - damping) * before + dt / inertia_[r] * forces_.moment[r]) / (1 + damping);
+      energies_.damping_work +=
+          2 * damping * inertia_[r] * (0.5 * (before + now.angular_velocity[r])).squaredNorm();
+    }
+    const double turn = dt * now.angular_velocity[r].norm();
+    if (!(turn < 1))
+      throw NumericalFailure(
+          "structure: {} turns by {:.3g} rad in one step at {:.6g} s (alarm at 1); reduce the step "
+          "or the load rate",
+          system_.describe(node), turn, now.time_s);
+    now.rotation[r] = (exponential(dt * now.angular_velocity[r]) * now.rotation[r]).normalized();
+  }
+}
+
+double Integrator::kinetic_energy() const {
+  double twice = 0;
+  for (std::size_t a = 0; a < mass_.size(); ++a)
+    if (!system_.held(static_cast<int>(a))) twice += mass_[a] * system_.state.v[a].squaredNorm();
+  for (std::size_t r = 0; r < inertia_.size(); ++r)
+    if (!system_.held(system_.node_of_rotation(static_cast<int>(r))))
+      twice += inertia_[r] * system_.state.angular_velocity[r].squaredNorm();
+  return 0.5 * twice;
+}
+
+double Integrator::mass_ratio() const {
+  double now = 0, physical = 0;
+  for (std::size_t a = 0; a < mass_.size(); ++a) {
+    now += mass_[a];
+    physical += system_.mass(static_cast<int>(a));
+  }
+  return now / physical;
+}
+
+Vec3 Integrator::momentum() const {
+  Vec3 total = Vec3::Zero();
+  for (std::size_t a = 0; a < mass_.size(); ++a) total += mass_[a] * system_.state.v[a];
+  return total;
+}
+
+Vec3 Integrator::angular_momentum() const {
+  const Configuration& now = system_.state;
+  Vec3 total = Vec3::Zero();
+  for (std::size_t a = 0; a < mass_.size(); ++a) total += mass_[a] * now.x[a].cross(now.v[a]);
+  for (std::size_t r = 0; r < inertia_.size(); ++r) total += inertia_[r] * now.angular_velocity[r];
+  return total;
+}
+
+Snapshot Integrator::save() const {
+  const Configuration& now = system_.state;
+  Snapshot s;
+  s["x"] = flat(now.x);
+  s["v"] = flat(now.v);
+  s["angular_velocity"] = flat(now.angular_velocity);
+  for (const Eigen::Quaterniond& q : now.rotation)
+    s["rotation"].insert(s["rotation"].end(), {q.w(), q.x(), q.y(), q.z()});
+  s["rotation"];  // present even when there are no rotations
+  s["mass"] = mass_;
+  s["inertia"] = inertia_;
+  s["clock"] = {now.time_s, static_cast<double>(steps_), settings_.damping_per_s};
+  s["energies"] = {energies_.kinetic,          energies_.stored,       energies_.stored_at_start,
+                   energies_.kinetic_at_start, energies_.damping_work, energies_.support_work,
+                   energies_.scaling_energy};
+  std::vector<double>& held = s["held"];
+  for (std::size_t a = 0; a < mass_.size(); ++a) held.push_back(system_.held(static_cast<int>(a)) ? 1 : 0);
+  for (const auto& term : terms_)
+    for (const auto& [name, values] : term->save()) s["term/" + term->name() + "/" + name] = values;
+  return s;
+}
+
+void Integrator::restore(const Snapshot& s) {
+  Configuration& now = system_.state;
+  const std::size_t nodes = system_.nodes(), turning = system_.rotational_nodes();
+  unflatten(entry(s, "x", 3 * nodes), now.x);
+  unflatten(entry(s, "v", 3 * nodes), now.v);
+  unflatten(entry(s, "angular_velocity", 3 * turning), now.angular_velocity);
+  const std::vector<double>& q = entry(s, "rotation", 4 * turning);
+  for (std::size_t r = 0; r < turning; ++r)
+    now.rotation[r] = Eigen::Quaterniond(q[4 * r], q[4 * r + 1], q[4 * r + 2], q[4 * r + 3]);
+  mass_ = entry(s, "mass", nodes);
+  inertia_ = entry(s, "inertia", turning);
+  const std::vector<double>& clock = entry(s, "clock", 3);
+  now.time_s = clock[0];
+  steps_ = static_cast<long>(clock[1]);
+  settings_.damping_per_s = clock[2];
+  const std::vector<double>& e = entry(s, "energies", 7);
+  energies_ = {e[0], e[1], e[2], e[3], e[4], e[5], e[6]};
+  const std::vector<double>& held = entry(s, "held", nodes);
+  for (std::size_t a = 0; a < nodes; ++a) {
+    if (held[a] != 0)
+      system_.hold(static_cast<int>(a));
+    else
+      system_.release(static_cast<int>(a));
+  }
+  for (const auto& term : terms_) {
+    const std::string prefix = "term/" + term->name() + "/";
+    Snapshot own;
+    for (const auto& [name, values] : s)
+      if (name.rfind(prefix, 0) == 0) own[name.substr(prefix.size())] = values;
+    term->restore(own);
+  }
+}
+
+}  // namespace valsalva::structure
