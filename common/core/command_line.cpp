@@ -8,9 +8,9 @@
 namespace valsalva {
 namespace {
 
-const std::vector<std::string> known_options{"--set",   "--fidelity", "--out",       "--from",
-                                             "--check", "--estimate", "--resume",    "--steps",
-                                             "--quiet", "--help",     "--reference", "--version"};
+const std::vector<std::string> known_options{"--set",    "--fidelity",  "--out",    "--from",  "--check",
+                                             "--digest", "--estimate",  "--resume", "--steps", "--quiet",
+                                             "--help",   "--reference", "--version"};
 
 long positive_integer(const std::string& option, const std::string& text) {
   long value = 0;
@@ -49,6 +49,8 @@ CommandLine parse_command_line(int argc, char** argv) {
       line.steps = positive_integer(option, value());
     else if (option == "--check")
       line.check = true;
+    else if (option == "--digest")
+      line.digest = true;
     else if (option == "--estimate")
       line.estimate = true;
     else if (option == "--resume")
@@ -83,6 +85,8 @@ std::string options_help() {
          "  --out DIR               folder of this stage's results (default runs/<case>/<stage>)\n"
          "  --from STATE.h5         the parent stage's state (default: the newest in runs/<case>/<parent>)\n"
          "  --check                 validate everything and print the effective parameters; nothing is run\n"
+         "  --digest                print the digest of the parameters this stage depends on; nothing is "
+         "run\n"
          "  --estimate              print the predicted time, memory and accuracy band; nothing is run\n"
          "  --resume                continue from this stage's newest checkpoint\n"
          "  --steps N               stop after N steps, with a checkpoint\n"

@@ -16,7 +16,7 @@ struct CommandLine {
   std::optional<Fidelity> fidelity;
   std::optional<std::filesystem::path> out, from;
   bool help = false, reference = false, version = false;
-  bool check = false, estimate = false, resume = false, quiet = false;
+  bool check = false, digest = false, estimate = false, resume = false, quiet = false;
   std::optional<long> steps;
 };
 

@@ -1,6 +1,7 @@
 #include "core/run_folder.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +14,16 @@
 
 namespace valsalva {
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Tells a file from another that has since taken its name.
+std::uint64_t inode_of(const fs::path& path) {
+  struct stat found {};
+  return ::stat(path.c_str(), &found) == 0 ? found.st_ino : 0;
+}
+
+}  // namespace
 
 void write_atomically(const fs::path& path, const std::string& text) {
   const fs::path part = path.string() + ".part";
@@ -121,7 +132,7 @@ std::vector<fs::path> RunFolder::states() const {
   std::vector<fs::path> found;
   if (!fs::is_directory(path_)) return found;
   for (const auto& entry : fs::directory_iterator(path_))
-    if (index_of(entry.path()) >= 0) found.push_back(entry.path());
+    if (index_of(entry.path()) >= 0 && !is_disregarded(entry.path())) found.push_back(entry.path());
   std::sort(found.begin(), found.end(),
             [](const auto& a, const auto& b) { return index_of(a) < index_of(b); });
   return found;
@@ -141,8 +152,20 @@ long RunFolder::index_of(const fs::path& state) {
   return matches ? std::stol(digits) : -1;
 }
 
+void RunFolder::disregard_present_states() {
+  for (const fs::path& state : states()) disregarded_[state] = inode_of(state);
+}
+
+bool RunFolder::is_disregarded(const fs::path& state) const {
+  const auto found = disregarded_.find(state);
+  return found != disregarded_.end() && found->second == inode_of(state);
+}
+
 void RunFolder::prune() const {
   const auto found = states();
+  if (found.empty()) return;
+  for (const auto& [path, inode] : disregarded_)
+    if (fs::exists(path) && is_disregarded(path)) fs::remove(path);
   for (std::size_t i = 0; i + 2 < found.size(); ++i) fs::remove(found[i]);
 }
 

@@ -1,6 +1,7 @@
 // The folder of one stage's run, runs/<case>/<stage>/: states, views, history.csv, summary.json.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -68,12 +69,17 @@ class RunFolder {
   std::vector<std::filesystem::path> states() const;
   std::optional<std::filesystem::path> latest_state() const;
   static long index_of(const std::filesystem::path& state);
-  /// Removes all states but the last two.
+  /// A run that starts afresh looks past the states of an earlier one: states() leaves them out, and prune()
+  /// removes them, that is, not before the new run has written a state of its own.
+  void disregard_present_states();
+  /// Removes all states but the last two. Call it after each state written.
   void prune() const;
   void write_summary(const Summary& summary) const;
 
  private:
+  bool is_disregarded(const std::filesystem::path& state) const;
   std::filesystem::path path_;
+  std::map<std::filesystem::path, std::uint64_t> disregarded_;  ///< path -> inode
 };
 
 }  // namespace valsalva

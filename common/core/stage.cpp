@@ -87,6 +87,10 @@ void run_stage(const Stage& stage, const Schema& schema, const CommandLine& line
     throw InputError("--from {}: no such file; give the state_NNNNNN.h5 of the stage before",
                      line.from->string());
   if (stage.check) stage.check(scene);
+  if (line.digest) {
+    if (first) fmt::print("{}\n", new_summary(stage, scene, comm).parameters_sha256);
+    return;
+  }
   if (line.check) {
     if (first) fmt::print("{}", scene.effective());
     return;
@@ -96,15 +100,11 @@ void run_stage(const Stage& stage, const Schema& schema, const CommandLine& line
     return;
   }
   const fs::path folder = line.out.value_or(fs::path("runs") / scene.name() / stage.name);
-  StageContext context{scene,
-                       RunFolder(folder),
-                       new_summary(stage, scene, comm),
-                       line.from,
-                       line.resume,
-                       line.steps,
-                       line.quiet,
-                       comm,
-                       first && !line.quiet};
+  RunFolder run(folder);
+  if (!line.resume) run.disregard_present_states();
+  StageContext context{scene,      std::move(run), new_summary(stage, scene, comm),
+                       line.from,  line.resume,    line.steps,
+                       line.quiet, comm,           first && !line.quiet};
   run_and_summarise(stage, context);
 }
 
@@ -121,16 +121,22 @@ bool interrupted() {
   return signal_arrived != 0;
 }
 
-std::filesystem::path StageContext::parent_state(const std::string& stage) const {
-  if (from) return *from;
-  const fs::path folder = run.path().parent_path() / stage;
-  std::vector<fs::path> found;
-  if (fs::is_directory(folder)) found = RunFolder(folder).states();
-  if (found.empty())
-    throw InputError(
-        "{}: no state of stage '{}' was found; run 'make {} CASE={}' first, or give it with --from",
-        folder.string(), stage, stage, scene.file().string());
-  return found.back();
+std::filesystem::path StageContext::parent_state(const std::string& stage) {
+  fs::path chosen;
+  if (from) {
+    chosen = *from;
+  } else {
+    const fs::path folder = run.path().parent_path() / stage;
+    std::vector<fs::path> found;
+    if (fs::is_directory(folder)) found = RunFolder(folder).states();
+    if (found.empty())
+      throw InputError(
+          "{}: no state of stage '{}' was found; run 'make {} CASE={}' first, or give it with --from",
+          folder.string(), stage, stage, scene.file().string());
+    chosen = found.back();
+  }
+  summary.inputs[chosen.string()] = sha256_of_path(chosen);
+  return chosen;
 }
 
 int stage_main(int argc, char** argv, const Stage& stage) {

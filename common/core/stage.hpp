@@ -35,8 +35,9 @@ struct StageContext {
   bool speaks = true;  ///< rank 0 and not quiet
 
   /// The parent's newest state: --from where given, else runs/<case>/<stage>/ beside this stage's own folder.
-  /// InputError when there is none (it says which command makes it).
-  std::filesystem::path parent_state(const std::string& stage) const;
+  /// Its digest is recorded in summary.inputs. InputError when there is none (it says which command makes
+  /// it).
+  std::filesystem::path parent_state(const std::string& stage);
   /// sha256 of the parameters this stage depends on.
   std::string parameters_sha256() const { return summary.parameters_sha256; }
 };

@@ -36,6 +36,7 @@ void write_values(hid_t parent, const std::string& name, const std::vector<std::
   const std::vector<hsize_t> sizes(shape.begin(), shape.end());
   const Handle space = simple_space(sizes);
   const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
+  check(H5Pset_obj_track_times(properties, 0), name);  // equal content gives equal files
   if (values.size() >= smallest_compressed) {
     std::vector<hsize_t> chunk = sizes;
     // Whole rows, about half a million values a chunk.

@@ -26,6 +26,21 @@ TEST(RunFolder, ListsStatesByIndexAndKeepsTwo) {
   EXPECT_EQ(run.states().front(), run.state_path(20));
 }
 
+TEST(RunFolder, AFreshRunRemovesOldStatesOnlyAfterItsFirstOwn) {
+  const test::TemporaryFolder folder;
+  RunFolder run(folder.path());
+  for (const long index : {5, 9}) touch(run.state_path(index));
+  run.disregard_present_states();
+  EXPECT_FALSE(run.latest_state());
+  run.prune();
+  EXPECT_TRUE(std::filesystem::exists(run.state_path(9)));
+  touch(folder / "new");
+  std::filesystem::rename(folder / "new", run.state_path(5));  // the new run's state takes an old name
+  run.prune();
+  EXPECT_EQ(run.latest_state(), run.state_path(5));
+  EXPECT_FALSE(std::filesystem::exists(run.state_path(9)));
+}
+
 TEST(RunFolder, AnImpossibleFolderIsAnEnvironmentError) {
   const test::TemporaryFolder folder;
   touch(folder / "file");
