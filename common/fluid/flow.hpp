@@ -1,0 +1,146 @@
+// Incompressible Navier-Stokes in a box, with walls and held bodies inside, by an incremental projection
+// method.
+//
+//   u* = u^n + dt [ (1 + r/2) N^n - r/2 N^(n-1) ] + dt/rho (f - grad p^n),   r = dt / dt_previous (first
+//   step: N^n) u* <- (u* + dt/eta U_solid) / (1 + dt/eta)                               on solid faces lap
+//   phi = rho/dt div u*,   u^(n+1) = u* - dt/rho grad phi,   p^(n+1) = p^n + phi
+//
+//   N = -div(u u) + nu lap u      (momentum.hpp)
+//
+// Second order in space and in time for the velocity (first order at penalised walls). Explicit, so
+// dt < h / (|u|+|v|+|w|) about, and dt < h^2 / (6 nu). The open ends keep the prescribed pressure on the
+// side.
+//
+// Order of calls in one step, forces known at its start:
+//     flow.clear_force(); (spread into flow.force()); flow.predict(dt); flow.project(dt);
+// or, for a force that depends on the predicted velocity:
+//     flow.predict(dt, {.old_pressure = false, .penalise = false}); ... flow.add_impulse(...);
+//     flow.penalise(dt); flow.project(dt);
+// All member functions are collective over the communicator.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fluid/boundary.hpp"
+#include "fluid/grid.hpp"
+#include "fluid/momentum.hpp"
+#include "fluid/poisson.hpp"
+#include "fluid/solids.hpp"
+#include "state/state.hpp"
+
+namespace valsalva::fluid {
+
+struct FlowParameters {
+  double density = 1.0e-3;    ///< g/mm3
+  double viscosity = 3.5e-3;  ///< Pa s
+  Convection convection = Convection::upwind3;
+  double penalisation_s = 1e-8;  ///< eta, the time constant of solid faces
+};
+
+struct PredictOptions {
+  bool force = true;         ///< use force()
+  bool old_pressure = true;  ///< false: a non-incremental step (p^(n+1) = phi)
+  bool penalise = true;
+};
+
+/// What project() learns about the new velocity at no further cost.
+struct StepReport {
+  double cfl = 0;             ///< dt max(|u|+|v|+|w|)/h over cells
+  double max_speed = 0;       ///< mm/s, max of |u|+|v|+|w| over cells
+  double kinetic_energy = 0;  ///< nanojoule, over the whole box
+};
+
+class Flow {
+ public:
+  Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const FlowParameters& parameters);
+  Flow(const Flow&) = delete;
+  Flow& operator=(const Flow&) = delete;
+
+  const Slab& slab() const { return slab_; }
+  const Grid& grid() const { return slab_.grid; }
+  const Boundaries& boundaries() const { return boundaries_; }
+  const FlowParameters& parameters() const { return parameters_; }
+  Solids& solids() { return solids_; }
+  const Solids& solids() const { return solids_; }
+
+  /// Ghosts are valid after construction, set_velocity and project. Between predict and project it holds u*,
+  /// whose ghosts need fill_ghosts() before they are read.
+  FaceField& velocity() { return velocity_; }
+  const FaceField& velocity() const { return velocity_; }
+  const Field& pressure() const { return pressure_; }
+  /// Force density on the fluid, micronewton/mm3, on the owned faces.
+  FaceField& force() { return force_; }
+  void clear_force() { force_.fill(0); }
+  /// Adds what was spread into ghost faces to the ranks (or periodic images) that own them.
+  void accumulate_force() { accumulate_ghosts(slab_, boundaries_, force_); }
+  void fill_ghosts() { fill_velocity_ghosts(slab_, boundaries_, velocity_); }
+
+  /// Initial velocity (component d at the position of its face, mm/s) and pressure; forgets the step history.
+  void set_velocity(const std::function<double(int d, const Vec3& x)>& value);
+  void set_pressure(const std::function<double(const Vec3& x)>& value);
+
+  /// Pressure on an open end, Pa.
+  void set_end_pressure(End end, double pressure) { end_pressure_[static_cast<int>(end)] = pressure; }
+  double end_pressure(End end) const { return end_pressure_[static_cast<int>(end)]; }
+  /// Velocity along +z on the faces of an inflow end, mm/s. Solid faces stay at rest.
+  void set_inflow(End end, const std::function<double(const Vec3& x)>& w);
+  /// The same shape, scaled to a flow in mm3/s along +z. InputError when the shape carries no flow.
+  void set_inflow_rate(End end, const std::function<double(const Vec3& x)>& shape, double rate);
+
+  void predict(double dt, const PredictOptions& options = {});
+  /// u += dt/rho * force density, between predict and project.
+  void add_impulse(const FaceField& force, double dt);
+  void penalise(double dt);
+  /// NumericalFailure (on all ranks) that names the cell when the new velocity is not finite.
+  StepReport project(double dt);
+  StepReport step(double dt) {
+    predict(dt);
+    return project(dt);
+  }
+
+  /// Flow along +z through the face plane k (0..nz of the whole grid), inside the lumen, mm3/s.
+  double flow_through(int plane) const;
+  double flow_through(End end) const { return flow_through(end == End::low ? 0 : grid().cells[2]); }
+  /// Open (not solid) area of a face plane, mm2.
+  double open_area(int plane) const;
+  /// Mean pressure over the lumen's cells of plane k (0..nz-1), Pa.
+  double mean_pressure(int plane) const;
+  /// The face plane nearest to z.
+  int plane_at(double z) const;
+  double kinetic_energy() const;            ///< nanojoule
+  double divergence() const;                ///< max |div u| over all cells, 1/s
+  Vec3 momentum() const;                    ///< g mm/s
+  Vec3 velocity_at(const Vec3& x) const;    ///< trilinear, mm/s; the same on all ranks
+  double pressure_at(const Vec3& x) const;  ///< trilinear, Pa
+
+  /// Everything the continuation needs, below "fluid/", complete on rank 0 and empty elsewhere; the same for
+  /// any number of ranks. Body masks and inflow shapes are the caller's, who sets them before load().
+  std::map<std::string, state::Array> save() const;
+  /// From the full arrays on every rank. InputError when shapes differ from the grid.
+  void load(const state::State& state);
+  /// Velocity (mm/s) and pressure (mmHg) at cell centres, on rank 0: what views show.
+  state::Image image() const;
+
+ private:
+  void project_field(double dt);
+  StepReport correct(double dt);
+  [[noreturn]] void report_not_finite() const;
+
+  Slab slab_;
+  Boundaries boundaries_;
+  FlowParameters parameters_;
+  Solids solids_;
+  Momentum momentum_;
+  Poisson poisson_;
+  FaceField velocity_, next_, rate_, force_;
+  Field pressure_, correction_;
+  std::array<double, 2> end_pressure_{};
+  std::array<std::vector<double>, 2> inflow_;  ///< w on the inflow faces, x fastest
+  double previous_dt_ = 0;                     ///< 0: no history
+  bool keep_pressure_ = true;
+};
+
+}  // namespace valsalva::fluid

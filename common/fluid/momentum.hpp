@@ -1,0 +1,49 @@
+// Convection and viscosity on the staggered grid, and the explicit update made from them, in one pass.
+//
+//   N = -div(u u) + nu lap u, conservative; the flux of q through a face, with advecting velocity a (mean of
+//   two): F = a [ c1 (q0 + q1) - c2 (q-1 + q2) ] + s |a| [ 3 (q0 - q1) + (q2 - q-1) ]
+//
+//   upwind3    c1 = 7/12, c2 = 1/12, s = 1/12   third-order upwind-biased face value (kappa = 1/3; van Leer
+//   1985) centred4   c1 = 7/12, c2 = 1/12, s = 0      fourth-order face value, no dissipation centred2   c1 =
+//   1/2,  c2 = 0,    s = 0      second order, conserves kinetic energy
+//
+// The advecting velocities are two-point means, so the scheme as a whole is second order.
+#pragma once
+
+#include <vector>
+
+#include "fluid/boundary.hpp"
+#include "fluid/grid.hpp"
+
+namespace valsalva::fluid {
+
+enum class Convection { upwind3, centred4, centred2 };
+
+/// next = velocity + dt (weight_new N + weight_old rate) + dt/rho (force - grad pressure);  rate <- N.
+struct Advance {
+  double dt = 0;
+  double weight_new = 1, weight_old = 0;
+  double density = 1;
+  const FaceField* force = nullptr;  ///< none: no force
+  const Field* pressure = nullptr;   ///< one valid ghost layer; none: no gradient
+};
+
+class Momentum {
+ public:
+  Momentum(const Slab& slab, const Boundaries& boundaries, Convection scheme, double kinematic_viscosity);
+
+  /// Ghosts of `velocity` must be valid. Owned faces of `next` and `rate` are written; ghosts are not.
+  void advance(const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next);
+
+ private:
+  struct Row;
+  void fluxes_z(const FaceField& velocity, int k, int side);
+  template <int d>
+  void plane(const FaceField& velocity, int k, const Advance& step, FaceField& rate, FaceField& next);
+  const Slab& slab_;
+  const Boundaries& boundaries_;
+  double c1_, c2_, s_, nu_;
+  std::vector<double> buffer_;
+};
+
+}  // namespace valsalva::fluid
