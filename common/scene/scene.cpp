@@ -6,6 +6,7 @@ void declare_all(Schema& schema) {
   declare_case(schema);
   declare_mesh(schema);
   declare_native(schema);
+  declare_device(schema);
 }
 
 }  // namespace valsalva

@@ -11,5 +11,6 @@ void declare_all(Schema& schema);
 void declare_case(Schema& schema);
 void declare_mesh(Schema& schema);
 void declare_native(Schema& schema);
+void declare_device(Schema& schema);
 
 }  // namespace valsalva
