@@ -1,0 +1,60 @@
+# The front door. Every target works alone and pulls in what it needs; see README.md.
+#   make demo                         the default case end to end, at draft fidelity
+#   make test                         build and run the tests
+#   make run CASE=name-or-path [FIDELITY=draft|standard|fine|reference] [NP=2] [SET="table.key=value ..."]
+#   make segment|mesher|stent|crimp|deploy|cycle|report CASE=...   that stage, when its inputs changed [FORCE=1] [RESUME=1]
+#   make cohort COHORT=file.csv [JOBS=n]
+#   make setup | build | bench | lint | reference | clean
+
+CASE     ?= demo
+FIDELITY ?=
+NP       ?=
+JOBS     ?= 1
+SET      ?=
+FORCE    ?=
+RESUME   ?=
+COHORT   ?= pipelines/cohorts/anatomies.csv
+
+PIPELINE = python3 pipelines/pipeline.py
+OPTIONS  = $(if $(FIDELITY),--fidelity $(FIDELITY)) $(if $(NP),--ranks $(NP)) $(if $(FORCE),--force) \
+           $(if $(RESUME),--resume) $(foreach pair,$(SET),--set $(pair))
+STAGES   = segment mesher stent crimp deploy cycle report
+
+.PHONY: demo test setup build run $(STAGES) cohort bench lint format reference clean
+
+demo: build
+	$(PIPELINE) run demo --fidelity $(or $(FIDELITY),draft) $(if $(NP),--ranks $(NP)) $(if $(FORCE),--force)
+
+test: build
+	cd build && ctest --output-on-failure --parallel 2
+
+setup:
+	@sh pipelines/setup.sh
+
+build: setup
+	@test -f build/build.ninja || cmake --preset release
+	cmake --build build
+
+run: build
+	$(PIPELINE) run $(CASE) $(OPTIONS)
+
+$(STAGES): build
+	$(PIPELINE) stage $@ $(CASE) $(OPTIONS)
+
+cohort: build
+	$(PIPELINE) cohort $(COHORT) --jobs $(JOBS) $(OPTIONS)
+
+bench: build
+	python3 pipelines/bench.py
+
+lint: setup
+	@sh pipelines/lint.sh
+
+format: setup
+	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
+
+reference: build
+	build/bin/valsalva-cycle --reference > docs/case-file.md
+
+clean:
+	rm -rf build runs
