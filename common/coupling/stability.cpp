@@ -1,0 +1,66 @@
+#include "coupling/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/errors.hpp"
+
+namespace valsalva::coupling {
+
+namespace {
+
+double dot(const Points& a, const Points& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+}  // namespace
+
+PowerIteration::PowerIteration(std::size_t nodes) : direction_(nodes), force_(nodes), next_(nodes) {
+  std::uint64_t seed = 0x9E3779B97F4A7C15ull;
+  for (Vec3& v : direction_)
+    for (int d = 0; d < 3; ++d) {
+      seed = seed * 6364136223846793005ull + 1442695040888963407ull;
+      v[d] = static_cast<double>(seed >> 11) / 9007199254740992.0 - 0.5;
+    }
+}
+
+double PowerIteration::run(const Operator& stiffness, const Operator& mobility, int iterations) {
+  for (int i = 0; i < iterations && !direction_.empty(); ++i) {
+    stiffness(direction_, force_);
+    mobility(force_, next_);
+    const double energy = dot(direction_, force_), size = std::sqrt(dot(next_, next_));
+    if (!(energy > 0) || !(size > 0)) return eigenvalue_ = 0;
+    eigenvalue_ = dot(force_, next_) / energy;
+    for (std::size_t a = 0; a < direction_.size(); ++a) direction_[a] = next_[a] / size;
+  }
+  return eigenvalue_;
+}
+
+double PowerIteration::critical_step() const {
+  return eigenvalue_ > 0 ? 2 / std::sqrt(eigenvalue_) : std::numeric_limits<double>::infinity();
+}
+
+void PowerIteration::restore(Points direction, double eigenvalue) {
+  VALSALVA_ASSERT(direction.size() == direction_.size());
+  direction_ = std::move(direction);
+  eigenvalue_ = eigenvalue;
+}
+
+double next_step(const StepLimits& limits, double critical_s, double speed, double h, double last_s) {
+  double dt = std::min(limits.largest_s, limits.safety * critical_s);
+  if (speed > 0) dt = std::min(dt, limits.cfl * h / speed);
+  if (last_s > 0) dt = std::min(dt, limits.growth * last_s);
+  if (!(dt >= limits.smallest_s))
+    throw NumericalFailure(
+        "coupling: the time step fell to {:.3g} s (structure allows {:.3g} s, the fastest fluid, {:.4g} "
+        "mm/s, "
+        "{:.3g} s); the computation has become unstable",
+        dt, critical_s, speed, limits.cfl * h / std::max(speed, 1e-300));
+  return dt;
+}
+
+}  // namespace valsalva::coupling

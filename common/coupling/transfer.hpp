@@ -1,0 +1,45 @@
+// Spreading of nodal forces to the staggered grid and interpolation of its velocity to the nodes.
+//
+//   (S F)(face of component d) = 1/h^3 sum_a F_a,d  W_d(x_a, face)      micronewton/mm3 from micronewton
+//   (J u)_a,d                  =       sum_faces u(face) W_d(x_a, face)
+//   W_d = product of phi in the three directions (kernel.hpp)
+//
+// S and J are adjoint: h^3 sum_faces (S F) u = sum_a F_a . (J u)_a, to round-off. Each rank spreads to the
+// faces it owns and interpolates from them; the partial sums are added over ranks, in rank order.
+//
+// Nodes have to stay two cells away from the sides of the box: NumericalFailure names the one that does not.
+#pragma once
+
+#include <vector>
+
+#include "core/types.hpp"
+#include "coupling/kernel.hpp"
+#include "fluid/grid.hpp"
+
+namespace valsalva::coupling {
+
+class Transfer {
+ public:
+  Transfer(const fluid::Slab& slab, Kernel kernel);
+
+  /// Takes the nodes' positions: every spread and interpolation until the next call uses them.
+  void locate(const Points& x);
+  /// density += S force on the owned faces.
+  void spread(const Points& force, fluid::FaceField& density) const;
+  /// out = J velocity, the same on all ranks (collective). Ghosts are not read.
+  void interpolate(const fluid::FaceField& velocity, Points& out) const;
+  std::size_t nodes() const { return stencils_.size(); }
+
+ private:
+  struct Stencil {  // one direction each: samples at faces and at cell centres
+    std::array<Weights, 3> face, centre;
+  };
+  template <class Row>
+  void visit(const Stencil& stencil, int component, Row&& row) const;
+
+  const fluid::Slab& slab_;
+  Kernel kernel_;
+  std::vector<Stencil> stencils_;
+};
+
+}  // namespace valsalva::coupling

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "coupling/repulsion.hpp"
+
+namespace {
+
+using namespace valsalva;
+using namespace valsalva::coupling;
+
+struct Cloud {
+  Points x;
+  std::vector<int> group;
+  std::vector<double> area;
+};
+
+Cloud cloud() {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0, 3);
+  Cloud c;
+  for (int a = 0; a < 150; ++a) {
+    c.x.emplace_back(unit(random), unit(random), unit(random));
+    c.group.push_back(a % 4 - 1);
+    c.area.push_back(0.1 + 0.05 * unit(random));
+  }
+  return c;
+}
+
+TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
+  const Cloud c = cloud();
+  Repulsion repulsion({2e4, 0.7}, c.group, c.area);
+  Points force(c.x.size(), Vec3::Zero());
+  EXPECT_GT(repulsion.add_forces(c.x, force), 0);
+  Vec3 total = Vec3::Zero();
+  for (const Vec3& f : force) total += f;
+  EXPECT_LT(total.norm(), 1e-8);
+  for (int a : {1, 17, 58, 101})
+    for (int d = 0; d < 3; ++d) {
+      const double e = 1e-6;
+      Points plus = c.x, minus = c.x, ignored(c.x.size(), Vec3::Zero());
+      plus[a][d] += e;
+      minus[a][d] -= e;
+      const double slope =
+          (repulsion.add_forces(plus, ignored) - repulsion.add_forces(minus, ignored)) / (2 * e);
+      EXPECT_NEAR(force[a][d], -slope, 1e-4 * (1 + std::abs(slope)));
+    }
+}
+
+TEST(Repulsion, FindsEveryPair) {
+  const Cloud c = cloud();
+  Repulsion repulsion({1e4, 0.5}, c.group, c.area);
+  Points force(c.x.size(), Vec3::Zero()), expected = force;
+  repulsion.add_forces(c.x, force);
+  double nearest = 0.5;
+  for (std::size_t a = 0; a < c.x.size(); ++a)
+    for (std::size_t b = 0; b < c.x.size(); ++b) {
+      const Vec3 apart = c.x[a] - c.x[b];
+      if (a == b || c.group[a] < 0 || c.group[b] < 0 || c.group[a] == c.group[b] || apart.norm() >= 0.5)
+        continue;
+      expected[a] += 1e4 * std::sqrt(c.area[a] * c.area[b]) * (1 - apart.norm() / 0.5) * apart.normalized();
+      nearest = std::min(nearest, apart.norm());
+    }
+  for (std::size_t a = 0; a < c.x.size(); ++a) EXPECT_LT((force[a] - expected[a]).norm(), 1e-8);
+  EXPECT_DOUBLE_EQ(repulsion.nearest(), nearest);
+}
+
+TEST(Repulsion, LeavesOneLeafletAlone) {
+  const Cloud c = cloud();
+  Repulsion repulsion({1e4, 0.5}, std::vector<int>(c.x.size(), 0), c.area);
+  Points force(c.x.size(), Vec3::Zero());
+  EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
+  EXPECT_EQ(repulsion.nearest(), 0.5);
+}
+
+}  // namespace
