@@ -34,7 +34,7 @@ def parents_of(tables):
         graph["mesher"] = ["segment"]
     if device:
         # The size comes from segment where the case leaves it open.
-        size_is_open = anatomy and not tables["device"].get("size_mm", 0) and not tables["device"].get("graph", "")
+        size_is_open = anatomy and not tables["device"].get("size_mm", 0) and not tables["device"].get("graph_file", "")
         graph["stent"] = ["segment"] if size_is_open else []
         graph["crimp"] = ["stent"]
         if anatomy:
