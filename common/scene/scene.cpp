@@ -7,6 +7,8 @@ void declare_all(Schema& schema) {
   declare_mesh(schema);
   declare_native(schema);
   declare_device(schema);
+  declare_deploy(schema);
+  declare_report(schema);
 }
 
 }  // namespace valsalva

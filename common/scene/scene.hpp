@@ -12,5 +12,7 @@ void declare_case(Schema& schema);
 void declare_mesh(Schema& schema);
 void declare_native(Schema& schema);
 void declare_device(Schema& schema);
+void declare_deploy(Schema& schema);
+void declare_report(Schema& schema);
 
 }  // namespace valsalva
