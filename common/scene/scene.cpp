@@ -4,6 +4,8 @@ namespace valsalva {
 
 void declare_all(Schema& schema) {
   declare_case(schema);
+  declare_anatomy(schema);
+  declare_phantom(schema);
   declare_mesh(schema);
   declare_native(schema);
   declare_device(schema);

@@ -9,6 +9,8 @@ namespace valsalva {
 void declare_all(Schema& schema);
 
 void declare_case(Schema& schema);
+void declare_anatomy(Schema& schema);
+void declare_phantom(Schema& schema);
 void declare_mesh(Schema& schema);
 void declare_native(Schema& schema);
 void declare_device(Schema& schema);
