@@ -1,0 +1,26 @@
+// The chapters of the report, each a <section> of HTML. A stage that was not run says so in its chapter.
+#pragma once
+
+#include <string>
+
+#include "page.hpp"
+#include "run_data.hpp"
+
+namespace valsalva::report {
+
+std::string overview_tiles(const RunData& run);
+std::string chain_list(const RunData& run);
+
+std::string anatomy_chapter(const RunData& run, const PageOptions& options);
+std::string mesh_chapter(const RunData& run, const PageOptions& options);
+std::string device_chapter(const RunData& run, const PageOptions& options);
+std::string deployment_chapter(const RunData& run, const PageOptions& options);
+std::string beat_chapter(const RunData& run, const PageOptions& options);
+
+std::string published_chapter(const RunData& run);
+std::string checks_chapter(const RunData& run);
+std::string accuracy_chapter(const RunData& run);
+std::string cost_chapter(const RunData& run);
+std::string provenance_chapter(const RunData& run);
+
+}  // namespace valsalva::report
