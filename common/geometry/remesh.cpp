@@ -1,0 +1,75 @@
+#include "geometry/remesh.hpp"
+
+#include <CGAL/Polygon_mesh_processing/remesh.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "geometry/surface_cgal.hpp"
+
+namespace valsalva::geometry {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using EdgeFlags = CgalMesh::Property_map<CgalMesh::Edge_index, bool>;
+using VertexFlags = CgalMesh::Property_map<CgalMesh::Vertex_index, bool>;
+
+/// Borders, and edges whose faces turn by more than the feature angle.
+EdgeFlags kept_edges(CgalMesh& mesh, double feature_angle_deg) {
+  auto kept = mesh.add_property_map<CgalMesh::Edge_index, bool>("e:kept", false).first;
+  const double threshold = std::cos(feature_angle_deg * std::numbers::pi / 180);
+  const auto normal = [&](CgalMesh::Halfedge_index h) -> Vec3 {
+    const Vec3 a = from_cgal(mesh.point(mesh.source(h))), b = from_cgal(mesh.point(mesh.target(h)));
+    return (b - a).cross(from_cgal(mesh.point(mesh.target(mesh.next(h)))) - a).normalized();
+  };
+  for (const auto edge : mesh.edges()) {
+    const auto h = mesh.halfedge(edge);
+    kept[edge] = mesh.is_border(edge) || normal(h).dot(normal(mesh.opposite(h))) < threshold;
+  }
+  return kept;
+}
+
+/// Kept points: where kept lines end, branch, or turn by more than the corner angle.
+VertexFlags corners_of(CgalMesh& mesh, const EdgeFlags& kept, double corner_angle_deg) {
+  auto corners = mesh.add_property_map<CgalMesh::Vertex_index, bool>("v:corner", false).first;
+  std::vector<std::vector<CgalMesh::Vertex_index>> along(mesh.number_of_vertices());
+  for (const auto edge : mesh.edges()) {
+    if (!kept[edge]) continue;
+    const auto a = mesh.vertex(edge, 0), b = mesh.vertex(edge, 1);
+    along[a.idx()].push_back(b);
+    along[b.idx()].push_back(a);
+  }
+  const double threshold = std::cos(corner_angle_deg * std::numbers::pi / 180);
+  for (const auto vertex : mesh.vertices()) {
+    const auto& ends = along[vertex.idx()];
+    if (ends.empty()) continue;
+    if (ends.size() != 2) {
+      corners[vertex] = true;
+      continue;
+    }
+    const Vec3 here = from_cgal(mesh.point(vertex));
+    const Vec3 in = (here - from_cgal(mesh.point(ends[0]))).normalized();
+    const Vec3 out = (from_cgal(mesh.point(ends[1])) - here).normalized();
+    corners[vertex] = in.dot(out) < threshold;
+  }
+  return corners;
+}
+
+}  // namespace
+
+TriMesh remesh(const TriMesh& input, const RemeshOptions& options) {
+  VALSALVA_ASSERT(options.edge_mm > 0);
+  CgalMesh mesh = to_cgal(input);
+  const auto kept = kept_edges(mesh, options.feature_angle_deg);
+  const auto corners = corners_of(mesh, kept, options.corner_angle_deg);
+  pmp::isotropic_remeshing(mesh.faces(), options.edge_mm, mesh,
+                           pmp::parameters::number_of_iterations(options.iterations)
+                               .number_of_relaxation_steps(3)
+                               .edge_is_constrained_map(kept)
+                               .vertex_is_constrained_map(corners)
+                               .relax_constraints(true)
+                               .protect_constraints(false));
+  return from_cgal(mesh);
+}
+
+}  // namespace valsalva::geometry
