@@ -23,7 +23,9 @@ enum class End { low = 0, high = 1 };  ///< of the z-axis
 struct Boundaries {
   std::array<std::array<Side, 2>, 3> side{
       {{Side::slip, Side::slip}, {Side::slip, Side::slip}, {Side::open, Side::open}}};
-  std::array<std::array<Vec3, 2>, 3> velocity{};  ///< mm/s, of walls; only its tangential part counts
+  /// mm/s, of walls; only its tangential part counts.
+  std::array<std::array<Vec3, 2>, 3> velocity{
+      {{Vec3::Zero(), Vec3::Zero()}, {Vec3::Zero(), Vec3::Zero()}, {Vec3::Zero(), Vec3::Zero()}}};
 
   bool periodic(int d) const { return side[d][0] == Side::periodic; }
   Side end(End end) const { return side[2][static_cast<int>(end)]; }

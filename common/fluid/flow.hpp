@@ -20,7 +20,8 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -110,11 +111,11 @@ class Flow {
   double mean_pressure(int plane) const;
   /// The face plane nearest to z.
   int plane_at(double z) const;
-  double kinetic_energy() const;            ///< nanojoule
-  double divergence() const;                ///< max |div u| over all cells, 1/s
-  Vec3 momentum() const;                    ///< g mm/s
-  Vec3 velocity_at(const Vec3& x) const;    ///< trilinear, mm/s; the same on all ranks
-  double pressure_at(const Vec3& x) const;  ///< trilinear, Pa
+  double kinetic_energy() const;          ///< nanojoule
+  double divergence() const;              ///< max |div u| over all cells, 1/s
+  Vec3 momentum() const;                  ///< g mm/s
+  Vec3 velocity_at(const Vec3& x) const;  ///< trilinear, mm/s; the same on all ranks
+  double pressure_at(const Vec3& x);      ///< trilinear, Pa
 
   /// Everything the continuation needs, below "fluid/", complete on rank 0 and empty elsewhere; the same for
   /// any number of ranks. Body masks and inflow shapes are the caller's, who sets them before load().
@@ -125,9 +126,11 @@ class Flow {
   state::Image image() const;
 
  private:
-  void project_field(double dt);
+  void apply_inflow(FaceField& velocity) const;
+  void fill_source(int k, double per_dt, double* plane);
   StepReport correct(double dt);
   [[noreturn]] void report_not_finite() const;
+  double sample(const Field& field, int d, const Vec3& x) const;
 
   Slab slab_;
   Boundaries boundaries_;
@@ -138,9 +141,9 @@ class Flow {
   FaceField velocity_, next_, rate_, force_;
   Field pressure_, correction_;
   std::array<double, 2> end_pressure_{};
-  std::array<std::vector<double>, 2> inflow_;  ///< w on the inflow faces, x fastest
+  std::array<std::vector<double>, 2> inflow_;  ///< w on the faces of inflow ends, x fastest
   double previous_dt_ = 0;                     ///< 0: no history
-  bool keep_pressure_ = true;
+  bool keep_pressure_ = true;                  ///< of the running step: incremental
 };
 
 }  // namespace valsalva::fluid

@@ -36,14 +36,20 @@ class Momentum {
   void advance(const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next);
 
  private:
-  struct Row;
-  void fluxes_z(const FaceField& velocity, int k, int side);
-  template <int d>
-  void plane(const FaceField& velocity, int k, const Advance& step, FaceField& rate, FaceField& next);
+  struct Coefficients {
+    double c1, c2, s;
+  };
+  template <bool open_end>
+  void plane(int d, int k, const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next);
+  void start_plane_fluxes(const FaceField& velocity);
+  void hold_sides(int k, FaceField& rate, FaceField& next) const;
+
   const Slab& slab_;
   const Boundaries& boundaries_;
-  double c1_, c2_, s_, nu_;
-  std::vector<double> buffer_;
+  Coefficients scheme_;
+  double nu_;
+  std::array<std::vector<double>, 3> flux_z_;  ///< of each component, through the low side of the next plane
+  std::vector<double> flux_x_, flux_y_, keep_;
 };
 
 }  // namespace valsalva::fluid

@@ -9,6 +9,8 @@
 // First order at the wall. A face belongs to one body, the first that claims it; body 0 is the lumen's wall.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -32,9 +34,9 @@ class Solids {
  public:
   static constexpr int wall = 0;
 
-  explicit Solids(const Slab& slab);
+  Solids(const Slab& slab, double density);
 
-  /// Faces where `distance` is not negative become wall; cells likewise outside the lumen.
+  /// Faces (and cells) whose centre has distance >= 0 become wall, unless a body holds them.
   void set_lumen(const Distance& distance);
   void set_lumen(const geometry::GridSdf& distance);
 
@@ -48,34 +50,42 @@ class Solids {
   void mark_segments(int body, const Points& points, const std::vector<Edge>& segments, double radius);
   /// Marks the free faces with distance(x) < 0 inside the box low..high.
   void mark_inside(int body, const Distance& distance, const Vec3& low, const Vec3& high);
-  void set_motion(int body, const RigidMotion& motion) { motion_[body] = motion; }
+  /// Not for the wall, which is at rest.
+  void set_motion(int body, const RigidMotion& motion);
 
-  bool any() const { return any_; }
-  /// 0: fluid; otherwise 1 + number of the body. Same index as a Field of the slab; valid on ghosts too.
-  const std::vector<std::uint8_t>& face_owner(int d) const { return owner_[d]; }
-  /// 1 where the cell's centre is inside the lumen and in no body's radius; same index as a Field.
-  const std::vector<std::uint8_t>& lumen_cell() const { return lumen_cell_; }
-  /// Faces owned by this rank that belong to the body, all components.
+  /// 0: fluid; otherwise 1 + number of the body. d = 3: the cell's centre. Owned planes only, k local.
+  std::uint8_t owner(int d, int i, int j, int k) const { return owner_[d][index(i, j, k)]; }
+  const std::uint8_t* owner_row(int d, int j, int k) const { return owner_[d].data() + index(0, j, k); }
+  /// Faces of this rank that belong to the body, all components.
   long faces(int body) const;
 
-  /// Penalises plane k of component d and adds the momentum taken from the fluid (g mm/s) to each body.
-  void penalise_plane(int d, int k, double ratio, Field& velocity);
-  void start_step() { removed_.assign(removed_.size(), Vec3::Zero()); }
-  /// Force of the fluid on the body over the last step, micronewton, summed over ranks (collective).
-  Vec3 force_on(int body, double dt) const;
-  void set_density(double density) { density_ = density; }
+  /// Penalises all owned faces with ratio = dt/eta, and keeps the momentum taken from the fluid for force_on.
+  void penalise(double dt, double eta, FaceField& velocity);
+  /// Force of the fluid on the body over the last penalised step, micronewton (collective).
+  Vec3 force_on(int body) const;
 
  private:
+  struct Held {
+    std::ptrdiff_t index;  ///< in a Field
+    std::uint8_t body;
+    Vec3 position;
+  };
+  std::size_t index(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * slab_.grid.cells[1] + j) * slab_.grid.cells[0] + i;
+  }
   template <class Inside>
   void mark(int body, const Vec3& low, const Vec3& high, const Inside& inside);
+  void check_body(int body) const;
+  void list_held_faces();
+
   const Slab& slab_;
-  double density_ = 1e-3;
-  bool any_ = false;
+  double density_;
+  bool has_wall_ = false, listed_ = true;
   std::vector<std::string> names_;
   std::vector<RigidMotion> motion_;
-  std::vector<Vec3> removed_;
-  std::array<std::vector<std::uint8_t>, 3> owner_;
-  std::vector<std::uint8_t> lumen_cell_;
+  std::vector<Vec3> force_;  ///< of this rank
+  std::array<std::vector<std::uint8_t>, 4> owner_;
+  std::array<std::vector<Held>, 3> held_;  ///< faces of bodies other than the wall
 };
 
 }  // namespace valsalva::fluid

@@ -1,0 +1,247 @@
+#include "fluid/boundary.hpp"
+
+#include <algorithm>
+
+#include "core/errors.hpp"
+
+namespace valsalva::fluid {
+
+namespace {
+
+struct Line {
+  double* base;      ///< entry 0 of the line
+  std::ptrdiff_t s;  ///< stride along the direction
+  int n;             ///< cells along the direction
+};
+
+// The ghosts of one line (or, with `width` > 1, of `width` neighbouring lines) beyond one side.
+// `normal`: the component is normal to the side, hence a face lies on it.
+void fill_side(const Line& line, int width, int side, Side kind, bool normal, double wall_velocity) {
+  const auto [base, s, n] = line;
+  const auto at = [=](int m) { return base + m * s; };
+  const auto set = [width](double* to, double factor, const double* from, double shift) {
+    for (int i = 0; i < width; ++i) to[i] = factor * from[i] + shift;
+  };
+  const bool high = side == 1;
+  if (kind == Side::periodic) {
+    for (int m = 0; m < ghosts; ++m) {
+      if (high) {
+        set(at(n + m), 1, at(m), 0);
+      } else {
+        set(at(-1 - m), 1, at(n - 1 - m), 0);
+      }
+    }
+  } else if (normal) {
+    const int face = high ? n : 0;
+    const double sign = kind == Side::slip ? -1 : 1;  // u ~ x at a slip side, u ~ x^2 at a wall
+    std::fill_n(at(face), width, 0.0);
+    const int layers = high ? ghosts - 1 : ghosts;
+    for (int m = 1; m <= layers; ++m)
+      set(at(high ? face + m : face - m), sign, at(high ? face - m : face + m), 0);
+  } else {
+    const double sign = kind == Side::slip ? 1 : -1;
+    const double shift = kind == Side::slip ? 0 : 2 * wall_velocity;
+    for (int m = 0; m < ghosts; ++m) set(at(high ? n + m : -1 - m), sign, at(high ? n - 1 - m : m), shift);
+  }
+}
+
+// Open end, tangential component d: zero gradient where the flow leaves, 0 where it enters.
+void fill_open_tangential(const Slab& slab, int d, int side, const Field& w, Field& field) {
+  const int n = slab.planes;
+  const int face = side == 1 ? n : 0;
+  const int inner = side == 1 ? n - 1 : 0;
+  const std::ptrdiff_t s = d == 0 ? 1 : slab.stride_y;
+  const double outward = side == 1 ? 1 : -1;
+  const int nx = slab.grid.cells[0], ny = slab.grid.cells[1];
+  // From one row and column inside the array's edge, where the mean of two w exists.
+  for (int j = 1 - ghosts; j < ny + ghosts; ++j) {
+    for (int i = 1 - ghosts; i < nx + ghosts; ++i) {
+      const double* at = w.row(j, face) + i;
+      const double value = outward * (at[0] + at[-s]) >= 0 ? field(i, j, inner) : 0;
+      for (int m = 0; m < ghosts; ++m) field(i, j, side == 1 ? n + m : -1 - m) = value;
+    }
+  }
+}
+
+void copy_plane(const Slab& slab, Field& field, int from, int to) {
+  const double* source = field.data().data() + field.index(-ghosts, -ghosts, from);
+  std::copy_n(source, slab.stride_z, field.data().data() + field.index(-ghosts, -ghosts, to));
+}
+
+void fill_end(const Slab& slab, const Boundaries& boundaries, int side, FaceField& velocity) {
+  const Side kind = boundaries.side[2][side];
+  const int n = slab.planes;
+  for (int d = 0; d < 3; ++d) {
+    Field& field = velocity[d];
+    const Line line{field.row(-ghosts, 0) - ghosts, slab.stride_z, n};
+    const int width = static_cast<int>(slab.stride_z);
+    if (kind == Side::open || kind == Side::inflow) {
+      if (d == 2) {
+        for (int m = 1; m <= (side == 1 ? ghosts - 1 : ghosts); ++m) {
+          copy_plane(slab, field, side == 1 ? n : 0, side == 1 ? n + m : -m);
+        }
+      } else if (kind == Side::open) {
+        fill_open_tangential(slab, d, side, velocity[2], field);
+      } else {
+        fill_side(line, width, side, Side::wall, false, 0);
+      }
+    } else {
+      fill_side(line, width, side, kind, d == 2, boundaries.velocity[2][side][d]);
+    }
+  }
+}
+
+void add_and_clear(double* to, double* from, std::ptrdiff_t count) {
+  for (std::ptrdiff_t i = 0; i < count; ++i) to[i] += from[i];
+  std::fill_n(from, count, 0.0);
+}
+
+void accumulate_planes(const Slab& slab, Field& field) {
+  const std::ptrdiff_t count = ghosts * slab.stride_z;
+  double* base = field.data().data();
+  double* below = base;
+  double* above = base + (slab.planes + ghosts) * slab.stride_z;
+  double* lowest = base + ghosts * slab.stride_z;
+  double* highest = base + slab.planes * slab.stride_z;
+  if (slab.ranks == 1) {
+    if (slab.periodic_z) {
+      add_and_clear(highest, below, count);
+      add_and_clear(lowest, above, count);
+    }
+    return;
+  }
+  const bool has_lower = slab.periodic_z || !slab.is_lowest();
+  const bool has_upper = slab.periodic_z || !slab.is_highest();
+  const int lower = has_lower ? (slab.rank + slab.ranks - 1) % slab.ranks : MPI_PROC_NULL;
+  const int upper = has_upper ? (slab.rank + 1) % slab.ranks : MPI_PROC_NULL;
+  std::vector<double> received(count);
+  const auto shift = [&](double* from, int to_rank, double* to, int from_rank) {
+    MPI_Sendrecv(from, static_cast<int>(count), MPI_DOUBLE, to_rank, 0, received.data(),
+                 static_cast<int>(count), MPI_DOUBLE, from_rank, 0, slab.comm, MPI_STATUS_IGNORE);
+    if (from_rank != MPI_PROC_NULL) add_and_clear(to, received.data(), count);
+    if (to_rank != MPI_PROC_NULL) std::fill_n(from, count, 0.0);
+  };
+  shift(below, lower, highest, upper);
+  shift(above, upper, lowest, lower);
+}
+
+}  // namespace
+
+void Boundaries::check() const {
+  for (int d = 0; d < 3; ++d) {
+    if ((side[d][0] == Side::periodic) != (side[d][1] == Side::periodic)) {
+      throw InputError(
+          "fluid boundaries: one side along {} is periodic and the other is not; make both periodic",
+          "xyz"[d]);
+    }
+    for (Side kind : side[d]) {
+      if (d < 2 && (kind == Side::open || kind == Side::inflow)) {
+        throw InputError("fluid boundaries: an open or inflow side along {}; only the ends in z can be open",
+                         "xyz"[d]);
+      }
+    }
+  }
+}
+
+void exchange_planes(const Slab& slab, Field& field, int layers) {
+  const std::ptrdiff_t count = layers * slab.stride_z;
+  double* base = field.data().data();
+  double* below = base + (ghosts - layers) * slab.stride_z;
+  double* lowest = base + ghosts * slab.stride_z;
+  double* above = base + (slab.planes + ghosts) * slab.stride_z;
+  double* highest = above - count;
+  if (slab.ranks == 1) {
+    if (slab.periodic_z) {
+      std::copy_n(highest, count, below);
+      std::copy_n(lowest, count, above);
+    }
+    return;
+  }
+  const bool has_lower = slab.periodic_z || !slab.is_lowest();
+  const bool has_upper = slab.periodic_z || !slab.is_highest();
+  const int lower = has_lower ? (slab.rank + slab.ranks - 1) % slab.ranks : MPI_PROC_NULL;
+  const int upper = has_upper ? (slab.rank + 1) % slab.ranks : MPI_PROC_NULL;
+  const int n = static_cast<int>(count);
+  MPI_Sendrecv(lowest, n, MPI_DOUBLE, lower, 0, above, n, MPI_DOUBLE, upper, 0, slab.comm, MPI_STATUS_IGNORE);
+  MPI_Sendrecv(highest, n, MPI_DOUBLE, upper, 1, below, n, MPI_DOUBLE, lower, 1, slab.comm,
+               MPI_STATUS_IGNORE);
+}
+
+void accumulate_ghosts(const Slab& slab, const Boundaries& boundaries, FaceField& faces) {
+  const int nx = slab.grid.cells[0], ny = slab.grid.cells[1];
+  for (Field& field : faces.component) {
+    accumulate_planes(slab, field);
+    for (int k = 0; k < slab.planes + 1; ++k) {
+      if (boundaries.periodic(1)) {
+        for (int m = 0; m < ghosts; ++m) {
+          add_and_clear(field.row(ny - 1 - m, k) - ghosts, field.row(-1 - m, k) - ghosts, slab.stride_y);
+          add_and_clear(field.row(m, k) - ghosts, field.row(ny + m, k) - ghosts, slab.stride_y);
+        }
+      }
+      if (boundaries.periodic(0)) {
+        for (int j = 0; j < ny; ++j) {
+          double* row = field.row(j, k);
+          for (int m = 0; m < ghosts; ++m) {
+            add_and_clear(row + nx - 1 - m, row - 1 - m, 1);
+            add_and_clear(row + m, row + nx + m, 1);
+          }
+        }
+      }
+    }
+  }
+}
+
+void fill_velocity_ghosts(const Slab& slab, const Boundaries& boundaries, FaceField& velocity) {
+  const int nx = slab.grid.cells[0], ny = slab.grid.cells[1];
+  for (int d = 0; d < 3; ++d) {
+    Field& field = velocity[d];
+    const int planes = d == 2 ? slab.w_planes() : slab.planes;
+    for (int k = 0; k < planes; ++k) {
+      for (int side = 0; side < 2; ++side) {
+        for (int j = 0; j < ny; ++j) {
+          fill_side({field.row(j, k), 1, nx}, 1, side, boundaries.side[0][side], d == 0,
+                    boundaries.velocity[0][side][d]);
+        }
+      }
+      for (int side = 0; side < 2; ++side) {
+        fill_side({field.row(0, k) - ghosts, slab.stride_y, ny}, static_cast<int>(slab.stride_y), side,
+                  boundaries.side[1][side], d == 1, boundaries.velocity[1][side][d]);
+      }
+    }
+    exchange_planes(slab, field, ghosts);
+  }
+  if (slab.periodic_z) return;
+  if (slab.is_lowest()) fill_end(slab, boundaries, 0, velocity);
+  if (slab.is_highest()) fill_end(slab, boundaries, 1, velocity);
+}
+
+void fill_pressure_ghosts(const Slab& slab, const Boundaries& boundaries, Field& pressure,
+                          const std::array<double, 2>& end_pressure) {
+  const int nx = slab.grid.cells[0], ny = slab.grid.cells[1], nz = slab.planes;
+  for (int k = 0; k < nz; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      double* row = pressure.row(j, k);
+      row[-1] = boundaries.periodic(0) ? row[nx - 1] : row[0];
+      row[nx] = boundaries.periodic(0) ? row[0] : row[nx - 1];
+    }
+    const double* below = pressure.row(boundaries.periodic(1) ? ny - 1 : 0, k);
+    const double* above = pressure.row(boundaries.periodic(1) ? 0 : ny - 1, k);
+    std::copy_n(below - 1, nx + 2, pressure.row(-1, k) - 1);
+    std::copy_n(above - 1, nx + 2, pressure.row(ny, k) - 1);
+  }
+  exchange_planes(slab, pressure, 1);
+  if (slab.periodic_z) return;
+  for (int side = 0; side < 2; ++side) {
+    if (side == 0 ? !slab.is_lowest() : !slab.is_highest()) continue;
+    const int inner = side == 0 ? 0 : nz - 1, ghost = side == 0 ? -1 : nz;
+    const bool open = boundaries.side[2][side] == Side::open;
+    const double factor = open ? -1 : 1, shift = open ? 2 * end_pressure[side] : 0;
+    for (int j = -1; j <= ny; ++j) {
+      const double* from = pressure.row(j, inner);
+      double* to = pressure.row(j, ghost);
+      for (int i = -1; i <= nx; ++i) to[i] = factor * from[i] + shift;
+    }
+  }
+}
+
+}  // namespace valsalva::fluid

@@ -1,0 +1,261 @@
+#include "fluid/flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace valsalva::fluid {
+
+namespace {
+
+const Boundaries& checked(const Boundaries& boundaries) {
+  boundaries.check();
+  return boundaries;
+}
+
+}  // namespace
+
+Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const FlowParameters& parameters)
+    : slab_(comm, grid, checked(boundaries).periodic(2)),
+      boundaries_(boundaries),
+      parameters_(parameters),
+      solids_(slab_, parameters.density),
+      momentum_(slab_, boundaries_, parameters.convection, parameters.viscosity / parameters.density),
+      poisson_(slab_, boundaries_),
+      velocity_(slab_),
+      next_(slab_),
+      rate_(slab_),
+      force_(slab_),
+      pressure_(slab_),
+      correction_(slab_) {
+  for (auto& plane : inflow_) plane.assign(grid.plane_cells(), 0.0);
+  fill_ghosts();
+}
+
+void Flow::set_velocity(const std::function<double(int, const Vec3&)>& value) {
+  const Grid& grid = slab_.grid;
+  for (int d = 0; d < 3; ++d) {
+    const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
+    for (int k = 0; k < planes; ++k) {
+      for (int j = 0; j < grid.cells[1]; ++j) {
+        for (int i = 0; i < grid.cells[0]; ++i) {
+          velocity_[d](i, j, k) = value(d, grid.position(d, i, j, k + slab_.first));
+        }
+      }
+    }
+  }
+  previous_dt_ = 0;
+  rate_.fill(0);
+  apply_inflow(velocity_);
+  fill_ghosts();
+}
+
+void Flow::set_pressure(const std::function<double(const Vec3&)>& value) {
+  const Grid& grid = slab_.grid;
+  for (int k = 0; k < slab_.planes; ++k) {
+    for (int j = 0; j < grid.cells[1]; ++j) {
+      for (int i = 0; i < grid.cells[0]; ++i) {
+        pressure_(i, j, k) = value(grid.position(3, i, j, k + slab_.first));
+      }
+    }
+  }
+}
+
+void Flow::set_inflow(End end, const std::function<double(const Vec3&)>& w) {
+  const int side = static_cast<int>(end);
+  if (boundaries_.end(end) != Side::inflow) {
+    throw InputError("fluid: an inflow velocity for the {} end in z, whose kind is not inflow",
+                     side == 0 ? "low" : "high");
+  }
+  if (side == 0 ? !slab_.is_lowest() : !slab_.is_highest()) return;
+  const Grid& grid = slab_.grid;
+  const int k = side == 0 ? 0 : slab_.planes;
+  for (int j = 0; j < grid.cells[1]; ++j) {
+    for (int i = 0; i < grid.cells[0]; ++i) {
+      inflow_[side][static_cast<std::size_t>(j) * grid.cells[0] + i] =
+          solids_.owner(2, i, j, k) == 0 ? w(grid.position(2, i, j, k + slab_.first)) : 0;
+    }
+  }
+}
+
+void Flow::set_inflow_rate(End end, const std::function<double(const Vec3&)>& shape, double rate) {
+  set_inflow(end, shape);
+  const int side = static_cast<int>(end);
+  const bool here = side == 0 ? slab_.is_lowest() : slab_.is_highest();
+  double carried = 0;
+  if (here) {
+    for (double w : inflow_[side]) carried += w * slab_.grid.h * slab_.grid.h;
+  }
+  carried = mpi::sum(slab_.comm, carried);
+  if (carried == 0) {
+    throw InputError(
+        "fluid: the inflow profile of the {} end carries no flow through the lumen; "
+        "check that the lumen reaches this end of the box",
+        side == 0 ? "low" : "high");
+  }
+  for (double& w : inflow_[side]) w *= rate / carried;
+}
+
+void Flow::apply_inflow(FaceField& velocity) const {
+  for (int side = 0; side < 2; ++side) {
+    if (boundaries_.side[2][side] != Side::inflow || (side == 0 ? !slab_.is_lowest() : !slab_.is_highest()))
+      continue;
+    const int nx = slab_.grid.cells[0], k = side == 0 ? 0 : slab_.planes;
+    for (int j = 0; j < slab_.grid.cells[1]; ++j) {
+      std::copy_n(inflow_[side].data() + static_cast<std::size_t>(j) * nx, nx, velocity[2].row(j, k));
+    }
+  }
+}
+
+void Flow::predict(double dt, const PredictOptions& options) {
+  if (!(dt > 0)) throw NumericalFailure("fluid: a time step of {} s", dt);
+  const double half_ratio = previous_dt_ > 0 ? 0.5 * dt / previous_dt_ : 0;
+  Advance step{
+      .dt = dt, .weight_new = 1 + half_ratio, .weight_old = -half_ratio, .density = parameters_.density};
+  if (options.force) step.force = &force_;
+  if (options.old_pressure) {
+    fill_pressure_ghosts(slab_, boundaries_, pressure_, end_pressure_);
+    step.pressure = &pressure_;
+  }
+  keep_pressure_ = options.old_pressure;
+  momentum_.advance(velocity_, step, rate_, next_);
+  apply_inflow(next_);
+  velocity_.swap(next_);
+  previous_dt_ = dt;
+  if (options.penalise) penalise(dt);
+}
+
+void Flow::add_impulse(const FaceField& force, double dt) {
+  const double factor = dt / parameters_.density;
+  const Grid& grid = slab_.grid;
+  for (int d = 0; d < 3; ++d) {
+    const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
+    const int from_i = d == 0 && !boundaries_.periodic(0) ? 1 : 0,
+              from_j = d == 1 && !boundaries_.periodic(1) ? 1 : 0;
+    for (int k = 0; k < planes; ++k) {
+      for (int j = from_j; j < grid.cells[1]; ++j) {
+        double* u = velocity_[d].row(j, k);
+        const double* f = force[d].row(j, k);
+        for (int i = from_i; i < grid.cells[0]; ++i) u[i] += factor * f[i];
+      }
+    }
+  }
+}
+
+void Flow::penalise(double dt) {
+  solids_.penalise(dt, parameters_.penalisation_s, velocity_);
+}
+
+void Flow::fill_source(int k, double per_dt, double* plane) {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const double factor = parameters_.density * per_dt / slab_.grid.h;
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  const double* first_v = velocity_[1].row(0, k);
+  double* end_v = velocity_[1].row(ny, k);
+  if (boundaries_.periodic(1)) {
+    std::copy_n(first_v, nx, end_v);
+  } else {
+    std::fill_n(end_v, nx, 0.0);
+  }
+  for (int j = 0; j < ny; ++j) {
+    double* u = velocity_[0].row(j, k);
+    u[nx] = boundaries_.periodic(0) ? u[0] : 0;
+    const double* v = velocity_[1].row(j, k);
+    const double* w = velocity_[2].row(j, k);
+    double* b = plane + static_cast<std::size_t>(j) * nx;
+#pragma omp simd
+    for (int i = 0; i < nx; ++i)
+      b[i] = factor * ((u[i + 1] - u[i]) + (v[i + sy] - v[i]) + (w[i + sz] - w[i]));
+  }
+}
+
+StepReport Flow::project(double dt) {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  exchange_planes(slab_, velocity_[2], 1);
+  // The exchange does not reach the highest face of a closed box, which belongs to its own slab.
+  poisson_.solve([&](int k, double* plane) { fill_source(k, 1 / dt, plane); },
+                 [&](int k, const double* plane) {
+                   for (int j = 0; j < ny; ++j) {
+                     std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, correction_.row(j, k));
+                   }
+                 });
+  const std::array<double, 2> ends = keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_;
+  fill_pressure_ghosts(slab_, boundaries_, correction_, ends);
+  const StepReport report = correct(dt);
+  if (!std::isfinite(report.kinetic_energy)) report_not_finite();
+  fill_ghosts();
+  return report;
+}
+
+StepReport Flow::correct(double dt) {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  const double factor = dt / (parameters_.density * slab_.grid.h);
+  const double keep = keep_pressure_ ? 1 : 0;
+  double energy = 0, speed = 0;
+  for (int k = 0; k < slab_.w_planes(); ++k) {
+    const bool inside = k < slab_.planes;
+    for (int j = 0; j < ny; ++j) {
+      const double* phi = correction_.row(j, k);
+      double* w = velocity_[2].row(j, k);
+      if (inside) {
+        double* u = velocity_[0].row(j, k);
+        double* v = velocity_[1].row(j, k);
+        double* p = pressure_.row(j, k);
+#pragma omp simd reduction(+ : energy) reduction(max : speed)
+        for (int i = 0; i < nx; ++i) {
+          const double un = u[i] - factor * (phi[i] - phi[i - 1]);
+          const double vn = v[i] - factor * (phi[i] - phi[i - sy]);
+          const double wn = w[i] - factor * (phi[i] - phi[i - sz]);
+          u[i] = un;
+          v[i] = vn;
+          w[i] = wn;
+          p[i] = keep * p[i] + phi[i];
+          energy += un * un + vn * vn + wn * wn;
+          const double sum = std::abs(un) + std::abs(vn) + std::abs(wn);
+          speed = speed < sum ? sum : speed;
+        }
+      } else {
+        for (int i = 0; i < nx; ++i) {
+          w[i] -= factor * (phi[i] - phi[i - sz]);
+          energy += w[i] * w[i];
+          speed = std::max(speed, std::abs(w[i]));
+        }
+      }
+    }
+  }
+  StepReport report;
+  report.kinetic_energy =
+      mpi::sum(slab_.comm, 0.5 * parameters_.density * std::pow(slab_.grid.h, 3) * energy);
+  report.max_speed = mpi::max(slab_.comm, speed);
+  report.cfl = dt * report.max_speed / slab_.grid.h;
+  return report;
+}
+
+void Flow::report_not_finite() const {
+  const Grid& grid = slab_.grid;
+  const double none = static_cast<double>(grid.all_cells());
+  double found = none;
+  for (int k = slab_.planes - 1; k >= 0; --k) {
+    for (int j = grid.cells[1] - 1; j >= 0; --j) {
+      for (int i = grid.cells[0] - 1; i >= 0; --i) {
+        double sum = pressure_(i, j, k);
+        for (int d = 0; d < 3; ++d) sum += velocity_[d](i, j, k);
+        if (!std::isfinite(sum))
+          found = (static_cast<double>(k + slab_.first) * grid.cells[1] + j) * grid.cells[0] + i;
+      }
+    }
+  }
+  const long cell = static_cast<long>(mpi::min(slab_.comm, found));
+  const int i = static_cast<int>(cell % grid.cells[0]),
+            j = static_cast<int>(cell / grid.cells[0] % grid.cells[1]),
+            k = static_cast<int>(cell / grid.cells[0] / grid.cells[1]);
+  const Vec3 x = grid.position(3, i, j, k);
+  throw NumericalFailure(
+      "fluid: the velocity is not finite; first in cell ({}, {}, {}) at ({:.2f}, {:.2f}, {:.2f}) mm. "
+      "Use a smaller time step (CFL and viscous limits), or look for a body that moves too fast there",
+      i, j, k, x[0], x[1], x[2]);
+}
+
+}  // namespace valsalva::fluid

@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "fluid/flow.hpp"
+
+namespace valsalva::fluid {
+
+namespace {
+
+// The owned local plane of w with the whole grid's index `plane`, or -1. Every plane has one owner.
+int local_w_plane(const Slab& slab, int plane) {
+  VALSALVA_ASSERT(plane >= 0 && plane <= slab.grid.cells[2]);
+  const int wrapped = slab.periodic_z ? plane % slab.grid.cells[2] : plane;
+  const int local = wrapped - slab.first;
+  return local >= 0 && local < slab.w_planes() ? local : -1;
+}
+
+}  // namespace
+
+double Flow::flow_through(int plane) const {
+  const Grid& grid = slab_.grid;
+  const int k = local_w_plane(slab_, plane);
+  double sum = 0;
+  if (k >= 0) {
+    for (int j = 0; j < grid.cells[1]; ++j) {
+      const std::uint8_t* owner = solids_.owner_row(2, j, k);
+      const double* w = velocity_[2].row(j, k);
+      for (int i = 0; i < grid.cells[0]; ++i) sum += owner[i] == 0 ? w[i] : 0;
+    }
+  }
+  return mpi::sum(slab_.comm, sum * grid.h * grid.h);
+}
+
+double Flow::open_area(int plane) const {
+  const Grid& grid = slab_.grid;
+  const int k = local_w_plane(slab_, plane);
+  long count = 0;
+  if (k >= 0) {
+    const std::uint8_t* owner = solids_.owner_row(2, 0, k);
+    count = std::count(owner, owner + grid.plane_cells(), std::uint8_t{0});
+  }
+  return mpi::sum(slab_.comm, static_cast<double>(count)) * grid.h * grid.h;
+}
+
+double Flow::mean_pressure(int plane) const {
+  const Grid& grid = slab_.grid;
+  VALSALVA_ASSERT(plane >= 0 && plane < grid.cells[2]);
+  double sum = 0, count = 0;
+  const int k = plane - slab_.first;
+  if (k >= 0 && k < slab_.planes) {
+    for (int j = 0; j < grid.cells[1]; ++j) {
+      const std::uint8_t* owner = solids_.owner_row(3, j, k);
+      const double* p = pressure_.row(j, k);
+      for (int i = 0; i < grid.cells[0]; ++i) {
+        sum += owner[i] == 0 ? p[i] : 0;
+        count += owner[i] == 0 ? 1 : 0;
+      }
+    }
+  }
+  sum = mpi::sum(slab_.comm, sum);
+  count = mpi::sum(slab_.comm, count);
+  if (count == 0) {
+    throw InputError("fluid: no open cell in the plane z = {:.2f} mm; move the plane into the lumen",
+                     grid.position(3, 0, 0, plane)[2]);
+  }
+  return sum / count;
+}
+
+int Flow::plane_at(double z) const {
+  const Grid& grid = slab_.grid;
+  return static_cast<int>(
+      std::clamp(std::lround((z - grid.origin[2]) / grid.h), 0L, static_cast<long>(grid.cells[2])));
+}
+
+double Flow::kinetic_energy() const {
+  const Grid& grid = slab_.grid;
+  double sum = 0;
+  for (int d = 0; d < 3; ++d) {
+    const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
+    for (int k = 0; k < planes; ++k) {
+      for (int j = 0; j < grid.cells[1]; ++j) {
+        const double* u = velocity_[d].row(j, k);
+        for (int i = 0; i < grid.cells[0]; ++i) sum += u[i] * u[i];
+      }
+    }
+  }
+  return mpi::sum(slab_.comm, 0.5 * parameters_.density * std::pow(grid.h, 3) * sum);
+}
+
+double Flow::divergence() const {
+  const Grid& grid = slab_.grid;
+  double largest = 0;
+  for (int k = 0; k < slab_.planes; ++k) {
+    for (int j = 0; j < grid.cells[1]; ++j) {
+      const double* u = velocity_[0].row(j, k);
+      const double* v = velocity_[1].row(j, k);
+      const double* w = velocity_[2].row(j, k);
+      for (int i = 0; i < grid.cells[0]; ++i) {
+        const double sum =
+            (u[i + 1] - u[i]) + (v[i + slab_.stride_y] - v[i]) + (w[i + slab_.stride_z] - w[i]);
+        largest = std::max(largest, std::abs(sum));
+      }
+    }
+  }
+  return mpi::max(slab_.comm, largest / grid.h);
+}
+
+Vec3 Flow::momentum() const {
+  const Grid& grid = slab_.grid;
+  Vec3 sum = Vec3::Zero();
+  for (int d = 0; d < 3; ++d) {
+    const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
+    for (int k = 0; k < planes; ++k) {
+      // Faces on an end of the box have half a cell of fluid.
+      const bool half =
+          d == 2 && !slab_.periodic_z && (k + slab_.first == 0 || k + slab_.first == grid.cells[2]);
+      for (int j = 0; j < grid.cells[1]; ++j) {
+        const double* u = velocity_[d].row(j, k);
+        for (int i = 0; i < grid.cells[0]; ++i) sum[d] += half ? 0.5 * u[i] : u[i];
+      }
+    }
+  }
+  sum *= parameters_.density * std::pow(grid.h, 3);
+  mpi::sum_in_place(slab_.comm, sum.data(), 3);
+  return sum;
+}
+
+double Flow::sample(const Field& field, int d, const Vec3& x) const {
+  const Grid& grid = slab_.grid;
+  // The slab that holds the point answers; the ends of the box belong to the slabs there.
+  const int plane =
+      std::clamp(static_cast<int>(std::floor((x[2] - grid.origin[2]) / grid.h)), 0, grid.cells[2] - 1);
+  double value = 0;
+  if (plane >= slab_.first && plane < slab_.first + slab_.planes) {
+    const Vec3 s = (x - grid.position(d, 0, 0, slab_.first)) / grid.h;
+    std::array<int, 3> at;
+    Vec3 t;
+    for (int e = 0; e < 3; ++e) {
+      const int last = e == 2 ? slab_.planes : grid.cells[e];
+      at[e] = std::clamp(static_cast<int>(std::floor(s[e])), -1, last - 1);
+      t[e] = std::clamp(s[e] - at[e], 0.0, 1.0);
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      double weight = 1;
+      std::array<int, 3> c = at;
+      for (int e = 0; e < 3; ++e) {
+        const bool up = (corner >> e) & 1;
+        weight *= up ? t[e] : 1 - t[e];
+        c[e] += up;
+      }
+      value += weight * field(c[0], c[1], c[2]);
+    }
+  }
+  return mpi::sum(slab_.comm, value);
+}
+
+Vec3 Flow::velocity_at(const Vec3& x) const {
+  return {sample(velocity_[0], 0, x), sample(velocity_[1], 1, x), sample(velocity_[2], 2, x)};
+}
+
+double Flow::pressure_at(const Vec3& x) {
+  fill_pressure_ghosts(slab_, boundaries_, pressure_, end_pressure_);
+  return sample(pressure_, 3, x);
+}
+
+}  // namespace valsalva::fluid

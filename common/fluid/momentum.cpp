@@ -1,0 +1,154 @@
+#include "fluid/momentum.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace valsalva::fluid {
+
+namespace {
+
+// Flux of q along the direction with stride s, through the side between q[-s] and q[0]; a: the velocity along
+// that direction, at two places a stride sd apart.
+inline double flux(double c1, double c2, double s12, const double* q, std::ptrdiff_t s, const double* a,
+                   std::ptrdiff_t sd) {
+  const double speed = 0.5 * (a[0] + a[-sd]);
+  const double near = q[-s] + q[0], far = q[-2 * s] + q[s];
+  const double jump = 3 * (q[-s] - q[0]) + (q[s] - q[-2 * s]);
+  return speed * (c1 * near - c2 * far) + s12 * std::abs(speed) * jump;
+}
+
+}  // namespace
+
+Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection scheme,
+                   double kinematic_viscosity)
+    : slab_(slab), boundaries_(boundaries), nu_(kinematic_viscosity) {
+  switch (scheme) {
+    case Convection::upwind3:
+      scheme_ = {7.0 / 12, 1.0 / 12, 1.0 / 12};
+      break;
+    case Convection::centred4:
+      scheme_ = {7.0 / 12, 1.0 / 12, 0};
+      break;
+    case Convection::centred2:
+      scheme_ = {0.5, 0, 0};
+      break;
+  }
+  const int nx = slab.grid.cells[0];
+  for (auto& plane : flux_z_) plane.resize(slab.grid.plane_cells());
+  flux_x_.resize(nx + 1);
+  flux_y_.resize(nx);
+  keep_.resize(nx);
+}
+
+void Momentum::start_plane_fluxes(const FaceField& velocity) {
+  const auto [c1, c2, s12] = scheme_;
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const std::array<std::ptrdiff_t, 3> stride{1, slab_.stride_y, slab_.stride_z};
+  for (int d = 0; d < 3; ++d) {
+    for (int j = 0; j < ny; ++j) {
+      const double* q = velocity[d].row(j, 0);
+      const double* w = velocity[2].row(j, 0);
+      double* fz = flux_z_[d].data() + static_cast<std::size_t>(j) * nx;
+      for (int i = 0; i < nx; ++i) fz[i] = flux(c1, c2, s12, q + i, stride[2], w + i, stride[d]);
+    }
+  }
+}
+
+template <bool open_end>
+void Momentum::plane(int d, int k, const FaceField& velocity, const Advance& step, FaceField& rate,
+                     FaceField& next) {
+  const auto [c1, c2, s12] = scheme_;
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  const std::ptrdiff_t sd = d == 0 ? 1 : d == 1 ? sy : sz;
+  const double per_h = 1 / slab_.grid.h, diffusion = nu_ * per_h * per_h;
+  const double new_weight = step.dt * step.weight_new, old_weight = step.dt * step.weight_old;
+  const double dt_rho = step.dt / step.density;
+  const double gradient = step.pressure ? dt_rho * per_h : 0;
+  double* __restrict fx = flux_x_.data();
+  double* __restrict fy = flux_y_.data();
+
+  const double* v0 = velocity[1].row(0, k);
+  for (int i = 0; i < nx; ++i) fy[i] = flux(c1, c2, s12, velocity[d].row(0, k) + i, sy, v0 + i, sd);
+
+  for (int j = 0; j < ny; ++j) {
+    const double* q = velocity[d].row(j, k);
+    const double* u = velocity[0].row(j, k);
+    const double* v = velocity[1].row(j + 1, k);
+    const double* w = velocity[2].row(j, k + 1);
+    const double* p = step.pressure ? step.pressure->row(j, k) : q;  // gradient = 0 without one
+    const double* f = step.force ? (*step.force)[d].row(j, k) : nullptr;
+    double* __restrict fz = flux_z_[d].data() + static_cast<std::size_t>(j) * nx;
+    double* __restrict n = rate[d].row(j, k);
+    double* __restrict out = next[d].row(j, k);
+    [[maybe_unused]] const double* keep = keep_.data();
+    if constexpr (open_end) {
+      const double outward = k == 0 ? -1 : 1;
+      for (int i = 0; i < nx; ++i) keep_[i] = outward * q[i] >= 0 ? 1 : 0;
+    }
+#pragma omp simd
+    for (int i = 0; i <= nx; ++i) fx[i] = flux(c1, c2, s12, q + i, 1, u + i, sd);
+#pragma omp simd
+    for (int i = 0; i < nx; ++i) {
+      const double above_y = flux(c1, c2, s12, q + i + sy, sy, v + i, sd);
+      const double above_z = flux(c1, c2, s12, q + i + sz, sz, w + i, sd);
+      const double divergence = (fx[i + 1] - fx[i]) + (above_y - fy[i]) + (above_z - fz[i]);
+      const double laplacian =
+          (q[i + 1] + q[i - 1]) + (q[i + sy] + q[i - sy]) + (q[i + sz] + q[i - sz]) - 6 * q[i];
+      double now = diffusion * laplacian - per_h * divergence;
+      if constexpr (open_end) now *= keep[i];
+      fy[i] = above_y;
+      fz[i] = above_z;
+      out[i] = q[i] + (new_weight * now + old_weight * n[i]) - gradient * (p[i] - p[i - sd]);
+      n[i] = now;
+    }
+    if (f) {
+#pragma omp simd
+      for (int i = 0; i < nx; ++i) out[i] += dt_rho * f[i];
+    }
+  }
+}
+
+void Momentum::hold_sides(int k, FaceField& rate, FaceField& next) const {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  if (!boundaries_.periodic(0)) {
+    for (int j = 0; j < ny; ++j) rate[0](0, j, k) = next[0](0, j, k) = 0;
+  }
+  if (!boundaries_.periodic(1)) {
+    std::fill_n(rate[1].row(0, k), nx, 0.0);
+    std::fill_n(next[1].row(0, k), nx, 0.0);
+  }
+}
+
+void Momentum::advance(const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next) {
+  start_plane_fluxes(velocity);
+  const auto is_open = [&](int k) {
+    return !slab_.periodic_z && ((k == 0 && slab_.is_lowest() && boundaries_.end(End::low) == Side::open) ||
+                                 (k == slab_.planes && boundaries_.end(End::high) == Side::open));
+  };
+  for (int k = 0; k < slab_.w_planes(); ++k) {
+    if (k < slab_.planes) {
+      plane<false>(0, k, velocity, step, rate, next);
+      plane<false>(1, k, velocity, step, rate, next);
+      hold_sides(k, rate, next);
+    }
+    if (is_open(k)) {
+      plane<true>(2, k, velocity, step, rate, next);
+    } else {
+      plane<false>(2, k, velocity, step, rate, next);
+    }
+  }
+  // Prescribed faces of walls, slip sides and inflow keep their velocity.
+  if (slab_.periodic_z) return;
+  for (int side = 0; side < 2; ++side) {
+    if (side == 0 ? !slab_.is_lowest() : !slab_.is_highest()) continue;
+    if (boundaries_.side[2][side] == Side::open) continue;
+    const int k = side == 0 ? 0 : slab_.planes;
+    for (int j = 0; j < slab_.grid.cells[1]; ++j) {
+      std::copy_n(velocity[2].row(j, k), slab_.grid.cells[0], next[2].row(j, k));
+      std::fill_n(rate[2].row(j, k), slab_.grid.cells[0], 0.0);
+    }
+  }
+}
+
+}  // namespace valsalva::fluid

@@ -1,0 +1,341 @@
+#include "fluid/poisson.hpp"
+
+#include <fftw3.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/errors.hpp"
+
+namespace valsalva::fluid {
+
+namespace {
+
+// h^2 times minus the eigenvalues of the one-dimensional second difference, in the order of FFTW's output.
+std::vector<double> eigenvalues(int n, bool periodic) {
+  std::vector<double> values(n);
+  for (int m = 0; m < n; ++m) {
+    const double angle =
+        periodic ? std::numbers::pi * std::min(m, n - m) / n : std::numbers::pi * m / (2.0 * n);
+    values[m] = 4 * std::pow(std::sin(angle), 2);
+  }
+  return values;
+}
+
+class PlaneBuffer {
+ public:
+  explicit PlaneBuffer(std::size_t size) : data_(fftw_alloc_real(size)) {
+    if (!data_)
+      throw EnvironmentError("out of memory for a plane of {} numbers of the pressure solver", size);
+    std::fill_n(data_, size, 0.0);
+  }
+  ~PlaneBuffer() { fftw_free(data_); }
+  PlaneBuffer(const PlaneBuffer&) = delete;
+  PlaneBuffer& operator=(const PlaneBuffer&) = delete;
+  double* data() { return data_; }
+
+ private:
+  double* data_;
+};
+
+}  // namespace
+
+struct Poisson::Impl {
+  Impl(const Slab& slab, const Boundaries& boundaries);
+  ~Impl();
+
+  void factorise(const Boundaries& boundaries);
+  void make_reduced_system();
+  void forward(const Source& b);
+  void exchange_ends();
+  void backward(const Sink& phi);
+  void solve_free_mean();
+
+  double* plane(std::vector<double>& planes, int step) { return planes.data() + plane_of(step) * modes; }
+  /// Local plane of a step of the sweep.
+  std::size_t plane_of(int step) const { return reversed ? planes - 1 - step : step; }
+
+  MPI_Comm comm;
+  int rank, ranks, planes, nx, ny, nz;
+  std::vector<int> firsts;
+  std::size_t modes;
+  double h;
+  bool periodic_z, free_mean, reversed, has_start, has_end;
+  fftw_plan to_modes = nullptr, from_modes = nullptr;
+  PlaneBuffer work, previous;
+  std::vector<double> shift;    ///< eigenvalue of each mode
+  std::vector<double> inverse;  ///< of the pivots, plane by plane
+  std::vector<double> reduced;  ///< right-hand side, then forward-eliminated
+  double scale = 1;             ///< -h^2 and the transforms' normalisation
+
+  // Values at the ends: x_first = first + gain xs + ..., of this rank, one number a mode.
+  std::vector<double> first_value, chain, start_value, end_value;
+  std::vector<int> mode_first;          ///< division of the modes over the ranks
+  std::vector<double> inverse_reduced;  ///< (2 P x 2 P) x own modes
+  std::vector<double> sent, received;
+  std::vector<double> mean_mode;  ///< right-hand side of the mode that is constant in x and y
+};
+
+Poisson::Impl::Impl(const Slab& slab, const Boundaries& boundaries)
+    : comm(slab.comm),
+      rank(slab.rank),
+      ranks(slab.ranks),
+      planes(slab.planes),
+      nx(slab.grid.cells[0]),
+      ny(slab.grid.cells[1]),
+      nz(slab.grid.cells[2]),
+      modes(slab.grid.plane_cells()),
+      h(slab.grid.h),
+      periodic_z(slab.periodic_z),
+      work(modes),
+      previous(modes) {
+  for (int r = 0; r <= ranks; ++r) {
+    firsts.push_back(slab.first_of(r));
+    mode_first.push_back(static_cast<int>(modes * r / ranks));
+  }
+  // The last slab is swept from the far end, so that no chain of two slabs needs a second sweep.
+  reversed = !periodic_z && ranks > 1 && slab.is_highest();
+  has_start = periodic_z || (!slab.is_lowest() && !slab.is_highest());
+  has_end = periodic_z || ranks > 1;
+  free_mean = boundaries.end(End::low) != Side::open && boundaries.end(End::high) != Side::open;
+
+  const bool px = boundaries.periodic(0), py = boundaries.periodic(1);
+  to_modes = fftw_plan_r2r_2d(ny, nx, work.data(), work.data(), py ? FFTW_R2HC : FFTW_REDFT10,
+                              px ? FFTW_R2HC : FFTW_REDFT10, FFTW_ESTIMATE);
+  from_modes = fftw_plan_r2r_2d(ny, nx, work.data(), work.data(), py ? FFTW_HC2R : FFTW_REDFT01,
+                                px ? FFTW_HC2R : FFTW_REDFT01, FFTW_ESTIMATE);
+  scale = -h * h / ((px ? nx : 2.0 * nx) * (py ? ny : 2.0 * ny));
+
+  const std::vector<double> lx = eigenvalues(nx, px), ly = eigenvalues(ny, py);
+  shift.resize(modes);
+  for (int j = 0; j < ny; ++j) {
+    for (int i = 0; i < nx; ++i) shift[static_cast<std::size_t>(j) * nx + i] = lx[i] + ly[j];
+  }
+  if (free_mean) shift[0] = 1;  // any regular value: this mode is solved apart
+  mean_mode.resize(planes);
+  factorise(boundaries);
+  if (has_end) make_reduced_system();
+}
+
+Poisson::Impl::~Impl() {
+  fftw_destroy_plan(to_modes);
+  fftw_destroy_plan(from_modes);
+}
+
+void Poisson::Impl::factorise(const Boundaries& boundaries) {
+  inverse.resize(modes * planes);
+  reduced.resize(modes * planes);
+  for (int step = 0; step < planes; ++step) {
+    const int k = static_cast<int>(plane_of(step)) + firsts[rank];
+    double end_term = 0;
+    if (!periodic_z && k == 0) end_term += boundaries.end(End::low) == Side::open ? 1 : -1;
+    if (!periodic_z && k == nz - 1) end_term += boundaries.end(End::high) == Side::open ? 1 : -1;
+    double* now = plane(inverse, step);
+    const double* before = step > 0 ? plane(inverse, step - 1) : nullptr;
+    for (std::size_t m = 0; m < modes; ++m) {
+      now[m] = 1 / (2 + shift[m] + end_term - (before ? before[m] : 0));
+    }
+  }
+}
+
+// With xs, xe the unknowns of the neighbours at the start and the end of this rank's sweep, elimination
+// leaves
+//   x_last = d + g xs + c xe,   x_first = a + b xs + g xe
+// where g is the product of all inverse pivots, c the last of them, b = sum over steps of chain g.
+void Poisson::Impl::make_reduced_system() {
+  std::vector<double> coefficients(3 * modes);  // c, g, b
+  const double* last = plane(inverse, planes - 1);
+  for (std::size_t m = 0; m < modes; ++m) {
+    double chain_product = 1, gain = 0;
+    for (int step = 0; step < planes; ++step) {
+      const double pivot = plane(inverse, step)[m];
+      gain += chain_product * chain_product * pivot;
+      chain_product *= pivot;
+    }
+    coefficients[m] = last[m];
+    coefficients[modes + m] = has_start ? chain_product : 0;
+    coefficients[2 * modes + m] = has_start ? gain : 0;
+  }
+  const int mine_from = mode_first[rank], mine = mode_first[rank + 1] - mine_from;
+  std::vector<double> all(3 * modes * ranks);
+  MPI_Allgather(coefficients.data(), static_cast<int>(3 * modes), MPI_DOUBLE, all.data(),
+                static_cast<int>(3 * modes), MPI_DOUBLE, comm);
+
+  const int size = 2 * ranks;  // unknowns: first and last of each rank
+  const auto first_of = [](int r) { return 2 * r; };
+  const auto last_of = [](int r) { return 2 * r + 1; };
+  const auto is_reversed = [&](int r) { return !periodic_z && ranks > 1 && r == ranks - 1; };
+  const auto start_of = [&](int r) { return last_of((r + ranks - 1) % ranks); };
+  const auto end_of = [&](int r) {
+    if (is_reversed(r)) return last_of(r - 1);
+    const int next = (r + 1) % ranks;
+    return is_reversed(next) ? last_of(next) : first_of(next);
+  };
+  inverse_reduced.resize(static_cast<std::size_t>(size) * size * mine);
+  Eigen::MatrixXd matrix(size, size), answer(size, size);
+  for (int m = 0; m < mine; ++m) {
+    matrix.setIdentity();
+    for (int r = 0; r < ranks; ++r) {
+      const double* of_rank = all.data() + 3 * modes * r + mine_from + m;
+      const double c = of_rank[0], g = of_rank[modes], b = of_rank[2 * modes];
+      if (g != 0) matrix(last_of(r), start_of(r)) -= g;
+      matrix(last_of(r), end_of(r)) -= c;
+      if (g != 0) {
+        matrix(first_of(r), start_of(r)) -= b;
+        matrix(first_of(r), end_of(r)) -= g;
+      }
+    }
+    const Eigen::MatrixXd inverted = matrix.inverse();
+    for (int r = 0; r < ranks; ++r) {  // rows: what each rank needs, xs and xe
+      answer.row(2 * r) = inverted.row(start_of(r));
+      answer.row(2 * r + 1) = inverted.row(end_of(r));
+    }
+    for (int row = 0; row < size; ++row) {
+      for (int column = 0; column < size; ++column) {
+        inverse_reduced[(static_cast<std::size_t>(row) * size + column) * mine + m] = answer(row, column);
+      }
+    }
+  }
+  first_value.resize(modes);
+  chain.resize(modes);
+  start_value.resize(modes);
+  end_value.resize(modes);
+  sent.resize(std::max(2 * modes, static_cast<std::size_t>(size) * mine));
+  received.resize(sent.size());
+}
+
+void Poisson::Impl::forward(const Source& b) {
+  const bool needs_first = has_start;
+  if (needs_first) {
+    std::fill(first_value.begin(), first_value.end(), 0.0);
+    std::fill(chain.begin(), chain.end(), 1.0);
+  }
+  double* in = work.data();
+  for (int step = 0; step < planes; ++step) {
+    b(static_cast<int>(plane_of(step)), in);
+    fftw_execute(to_modes);
+    mean_mode[plane_of(step)] = scale * in[0];
+    const double* pivot = plane(inverse, step);
+    double* now = plane(reduced, step);
+    if (step == 0) {
+      for (std::size_t m = 0; m < modes; ++m) now[m] = scale * in[m] * pivot[m];
+    } else {
+      const double* before = plane(reduced, step - 1);
+#pragma omp simd
+      for (std::size_t m = 0; m < modes; ++m) now[m] = (scale * in[m] + before[m]) * pivot[m];
+    }
+    if (needs_first) {
+#pragma omp simd
+      for (std::size_t m = 0; m < modes; ++m) {
+        first_value[m] += chain[m] * now[m];
+        chain[m] *= pivot[m];
+      }
+    }
+  }
+}
+
+void Poisson::Impl::exchange_ends() {
+  const int mine = mode_first[rank + 1] - mode_first[rank];
+  std::vector<int> to_count(ranks), to_at(ranks), from_count(ranks, 2 * mine), from_at(ranks);
+  const double* last = plane(reduced, planes - 1);
+  int at = 0;
+  for (int r = 0; r < ranks; ++r) {
+    const int from = mode_first[r], count = mode_first[r + 1] - from;
+    to_at[r] = at;
+    to_count[r] = 2 * count;
+    from_at[r] = 2 * mine * r;
+    if (has_start) {
+      std::copy_n(first_value.data() + from, count, sent.data() + at);
+    } else {
+      std::fill_n(sent.data() + at, count, 0.0);
+    }
+    std::copy_n(last + from, count, sent.data() + at + count);
+    at += 2 * count;
+  }
+  MPI_Alltoallv(sent.data(), to_count.data(), to_at.data(), MPI_DOUBLE, received.data(), from_count.data(),
+                from_at.data(), MPI_DOUBLE, comm);
+  const int size = 2 * ranks;
+  for (int row = 0; row < size; ++row) {
+    double* out = sent.data() + static_cast<std::size_t>(row) * mine;
+    std::fill_n(out, mine, 0.0);
+    for (int column = 0; column < size; ++column) {
+      const double* factor = inverse_reduced.data() + (static_cast<std::size_t>(row) * size + column) * mine;
+      const double* in = received.data() + static_cast<std::size_t>(column) * mine;
+      for (int m = 0; m < mine; ++m) out[m] += factor[m] * in[m];
+    }
+  }
+  MPI_Alltoallv(sent.data(), from_count.data(), from_at.data(), MPI_DOUBLE, received.data(), to_count.data(),
+                to_at.data(), MPI_DOUBLE, comm);
+  for (int r = 0; r < ranks; ++r) {
+    const int from = mode_first[r], count = mode_first[r + 1] - from;
+    std::copy_n(received.data() + to_at[r], count, start_value.data() + from);
+    std::copy_n(received.data() + to_at[r] + count, count, end_value.data() + from);
+  }
+}
+
+void Poisson::Impl::backward(const Sink& phi) {
+  if (has_start) {
+    for (int step = 0; step < planes; ++step) {
+      const double* pivot = plane(inverse, step);
+      double* now = plane(reduced, step);
+#pragma omp simd
+      for (std::size_t m = 0; m < modes; ++m) {
+        start_value[m] *= pivot[m];
+        now[m] += start_value[m];
+      }
+    }
+  }
+  double* before = previous.data();
+  if (has_end) {
+    std::copy_n(end_value.data(), modes, before);
+  } else {
+    std::fill_n(before, modes, 0.0);
+  }
+  double* out = work.data();
+  for (int step = planes - 1; step >= 0; --step) {
+    const double* pivot = plane(inverse, step);
+    const double* now = plane(reduced, step);
+#pragma omp simd
+    for (std::size_t m = 0; m < modes; ++m) out[m] = before[m] = now[m] + pivot[m] * before[m];
+    if (free_mean) out[0] = mean_mode[plane_of(step)];
+    fftw_execute(from_modes);
+    phi(static_cast<int>(plane_of(step)), out);
+  }
+}
+
+// The mode constant in x and y with Neumann or periodic ends: phi(k-1) - 2 phi(k) + phi(k+1) = -r(k), mean 0.
+void Poisson::Impl::solve_free_mean() {
+  std::vector<int> counts(ranks);
+  for (int r = 0; r < ranks; ++r) counts[r] = firsts[r + 1] - firsts[r];
+  std::vector<double> r(nz), phi(nz);
+  MPI_Allgatherv(mean_mode.data(), planes, MPI_DOUBLE, r.data(), counts.data(), firsts.data(), MPI_DOUBLE,
+                 comm);
+  double mean = 0;
+  for (double value : r) mean += value / nz;
+  std::vector<double> slope(nz, 0.0);  // phi(k) - phi(k-1)
+  for (int k = 1; k < nz; ++k) slope[k] = slope[k - 1] - (r[k - 1] - mean);
+  if (periodic_z) {
+    double average = 0;
+    for (double value : slope) average += value / nz;
+    for (double& value : slope) value -= average;
+  }
+  for (int k = 1; k < nz; ++k) phi[k] = phi[k - 1] + slope[k];
+  double level = 0;
+  for (double value : phi) level += value / nz;
+  for (int k = 0; k < planes; ++k) mean_mode[k] = phi[firsts[rank] + k] - level;
+}
+
+Poisson::Poisson(const Slab& slab, const Boundaries& boundaries)
+    : impl_(std::make_unique<Impl>(slab, boundaries)) {}
+Poisson::~Poisson() = default;
+
+void Poisson::solve(const Source& b, const Sink& phi) {
+  impl_->forward(b);
+  if (impl_->has_end) impl_->exchange_ends();
+  if (impl_->free_mean) impl_->solve_free_mean();
+  impl_->backward(phi);
+}
+
+}  // namespace valsalva::fluid
