@@ -54,7 +54,7 @@ double next_step(const StepLimits& limits, double critical_s, double speed, doub
   double dt = std::min(limits.largest_s, limits.safety * critical_s);
   if (speed > 0) dt = std::min(dt, limits.cfl * h / speed);
   if (last_s > 0) dt = std::min(dt, limits.growth * last_s);
-  if (!(dt >= limits.smallest_s))
+  if (!(dt >= limits.smallest_s) || std::isnan(critical_s) || std::isnan(speed))
     throw NumericalFailure(
         "coupling: the time step fell to {:.3g} s (structure allows {:.3g} s, the fastest fluid, {:.4g} "
         "mm/s, "

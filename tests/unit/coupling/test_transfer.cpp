@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "core/errors.hpp"

@@ -1,0 +1,100 @@
+#include "coupling/immersed_flow.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/errors.hpp"
+
+namespace valsalva::coupling {
+
+ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> shell,
+                           const ImmersedFlowSettings& settings)
+    : flow_(flow),
+      shell_(std::move(shell)),
+      settings_(settings),
+      transfer_(flow.slab(), settings.kernel),
+      power_(shell_ ? shell_->x().size() : 0),
+      scratch_(flow.slab()) {}
+
+void ImmersedFlow::probe() {
+  shell_->update_tangent();
+  const double per_density = 1 / flow_.parameters().density;
+  power_.run([&](const Points& y, Points& f) { shell_->tangent_product(y, f); },
+             [&](const Points& f, Points& v) {
+               scratch_.fill(0);
+               transfer_.spread(f, scratch_);
+               transfer_.interpolate(scratch_, v);
+               for (Vec3& each : v) each *= per_density;
+             },
+             steps_ == 0 ? settings_.first_iterations : settings_.probe_iterations);
+}
+
+double ImmersedFlow::plan(double at_most) {
+  if (shell_) {
+    transfer_.locate(shell_->x());
+    if (steps_ % settings_.probe_interval == 0) probe();
+    if (shell_->largest_stretch() > settings_.largest_stretch)
+      throw NumericalFailure("coupling: a leaflet edge is {:.3g} times as long as in its stress-free shape",
+                             shell_->largest_stretch());
+  }
+  StepLimits limits = settings_.limits;
+  limits.safety *= caution_;
+  limits.cfl *= caution_;
+  const double critical = shell_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
+  return planned_ = std::min(at_most, next_step(limits, critical, max_speed_, flow_.grid().h, last_dt_));
+}
+
+ImmersedStep ImmersedFlow::step(double at_most) {
+  ImmersedStep done;
+  done.dt_s = planned_ > 0 ? planned_ : plan(at_most);
+  planned_ = 0;
+  flow_.clear_force();
+  if (shell_) {
+    shell_->forces(force_);
+    transfer_.spread(force_, flow_.force());
+  }
+  flow_.predict(done.dt_s, {.force = shell_ != nullptr, .old_pressure = true, .penalise = true});
+  done.fluid = flow_.project(done.dt_s);
+  done.critical_s = shell_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
+  if (shell_) {
+    transfer_.interpolate(flow_.velocity(), velocity_);
+    shell_->move(velocity_, done.dt_s);
+  }
+  max_speed_ = done.fluid.max_speed;
+  last_dt_ = done.dt_s;
+  ++steps_;
+  return done;
+}
+
+std::map<std::string, state::Array> ImmersedFlow::save() const {
+  std::map<std::string, state::Array> arrays = flow_.save();
+  if (shell_) {
+    arrays["coupling/points"] = state::Array::of(shell_->x());
+    arrays["coupling/direction"] = state::Array::of(power_.direction());
+  }
+  arrays["coupling/history"] = state::Array::of(
+      std::vector<double>{static_cast<double>(steps_), last_dt_, max_speed_, caution_, power_.eigenvalue()});
+  return arrays;
+}
+
+void ImmersedFlow::load(const state::State& state) {
+  flow_.load(state);
+  const std::vector<double>& history = state.array("coupling/history").doubles("coupling/history");
+  if (history.size() != 5)
+    throw InputError("{}: coupling/history has {} entries, expected 5", state.source, history.size());
+  steps_ = static_cast<long>(history[0]);
+  last_dt_ = history[1];
+  max_speed_ = history[2];
+  caution_ = history[3];
+  planned_ = 0;
+  if (!shell_) return;
+  Points x = state.array("coupling/points").points("coupling/points");
+  Points direction = state.array("coupling/direction").points("coupling/direction");
+  if (x.size() != shell_->x().size() || direction.size() != x.size())
+    throw InputError("{}: coupling/points has {} nodes, the leaflets have {}", state.source, x.size(),
+                     shell_->x().size());
+  shell_->set_x(std::move(x));
+  power_.restore(std::move(direction), history[4]);
+}
+
+}  // namespace valsalva::coupling

@@ -1,0 +1,73 @@
+// The coupled system of one time step: fluid and, where the scene has one, an immersed shell.
+//
+//   every probe_interval steps: lambda_max of (1/rho) J S K anew             (stability.hpp)
+//   dt from the limits;  F = F(x^n);  f = S F;  u^(n+1) by the projection method;  x^(n+1) = x^n + dt J
+//   u^(n+1)
+// with S and J at x^n: symplectic Euler for the structure, so that no energy is put in by the lag.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "coupling/immersed_shell.hpp"
+#include "coupling/stability.hpp"
+#include "coupling/transfer.hpp"
+#include "fluid/flow.hpp"
+
+namespace valsalva::coupling {
+
+struct ImmersedFlowSettings {
+  Kernel kernel{Basis::ib4, Basis::ib4};
+  StepLimits limits;
+  int probe_interval = 8;        ///< steps between estimates of lambda_max
+  int probe_iterations = 2;      ///< power iterations each
+  int first_iterations = 40;     ///< at the start, from a random direction
+  double largest_stretch = 1.6;  ///< alarm: an edge longer than this times its reference length
+};
+
+struct ImmersedStep {
+  double dt_s = 0;
+  double critical_s = 0;  ///< dt_crit; infinite without a shell
+  fluid::StepReport fluid;
+};
+
+class ImmersedFlow {
+ public:
+  /// shell may be null: flow past held bodies alone. The flow must outlive this object.
+  ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> shell, const ImmersedFlowSettings& settings);
+
+  /// One step of at most `at_most` seconds. NumericalFailure (on all ranks) by any alarm: the state is then
+  /// to be restored.
+  ImmersedStep step(double at_most);
+  /// The step that step() would take; end pressures of the coming step can be set in between.
+  double plan(double at_most);
+
+  fluid::Flow& flow() { return flow_; }
+  ImmersedShell* shell() { return shell_.get(); }
+  const ImmersedShell* shell() const { return shell_.get(); }
+  long steps() const { return steps_; }
+  /// Scales limits.safety from now on: smaller steps after an alarm. Part of the state.
+  void set_caution(double factor) { caution_ = factor; }
+  double caution() const { return caution_; }
+
+  /// Flow, shell, power iteration and step history; complete on rank 0 (collective). load wants the full
+  /// arrays on every rank and continues bitwise at equal ranks.
+  std::map<std::string, state::Array> save() const;
+  void load(const state::State& state);
+
+ private:
+  void probe();
+
+  fluid::Flow& flow_;
+  std::unique_ptr<ImmersedShell> shell_;
+  ImmersedFlowSettings settings_;
+  Transfer transfer_;
+  PowerIteration power_;
+  fluid::FaceField scratch_;
+  Points force_, velocity_;
+  long steps_ = 0;
+  double last_dt_ = 0, max_speed_ = 0, caution_ = 1;
+  double planned_ = 0;
+};
+
+}  // namespace valsalva::coupling

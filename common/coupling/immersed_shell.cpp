@@ -1,0 +1,85 @@
+#include "coupling/immersed_shell.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace valsalva::coupling {
+
+namespace {
+
+constexpr double fastest_mm_per_s = 2e4;  // ten times a stenotic jet
+
+void sum_over_ranks(MPI_Comm comm, int ranks, Points& values) {
+  if (ranks > 1 && !values.empty()) mpi::sum_in_place(comm, values[0].data(), 3 * values.size());
+}
+
+}  // namespace
+
+ImmersedShell::ImmersedShell(MPI_Comm comm, structure::Shell shell, Points start,
+                             std::vector<std::uint8_t> clamped, std::vector<int> group,
+                             const RepulsionParameters& repulsion)
+    : comm_(comm),
+      part_{mpi::rank(comm), mpi::size(comm)},
+      shell_(std::move(shell)),
+      tangent_(shell_, part_),
+      repulsion_(repulsion, std::move(group), shell_.lumped_area()),
+      x_(std::move(start)),
+      clamped_(std::move(clamped)) {
+  VALSALVA_ASSERT(x_.size() == static_cast<std::size_t>(shell_.nodes()) && clamped_.size() == x_.size());
+}
+
+void ImmersedShell::set_x(Points x) {
+  VALSALVA_ASSERT(x.size() == x_.size());
+  x_ = std::move(x);
+}
+
+void ImmersedShell::forces(Points& out) {
+  out.assign(x_.size(), Vec3::Zero());
+  shell_.add_forces(x_, out, 0, part_);
+  sum_over_ranks(comm_, part_.count, out);
+  pull_.setZero();
+  for (std::size_t a = 0; a < x_.size(); ++a)
+    if (clamped_[a]) pull_ += out[a];
+  repulsion_.add_forces(x_, out);
+  for (std::size_t a = 0; a < x_.size(); ++a)
+    if (clamped_[a]) out[a].setZero();
+}
+
+void ImmersedShell::tangent_product(const Points& direction, Points& out) const {
+  free_direction_ = direction;
+  for (std::size_t a = 0; a < x_.size(); ++a)
+    if (clamped_[a]) free_direction_[a].setZero();
+  out.assign(x_.size(), Vec3::Zero());
+  tangent_.apply(free_direction_, out);
+  sum_over_ranks(comm_, part_.count, out);
+  for (std::size_t a = 0; a < x_.size(); ++a)
+    if (clamped_[a]) out[a].setZero();
+}
+
+void ImmersedShell::move(const Points& velocity, double dt) {
+  for (std::size_t a = 0; a < x_.size(); ++a) {
+    if (clamped_[a]) continue;
+    if (!(velocity[a].norm() < fastest_mm_per_s))
+      throw NumericalFailure(
+          "coupling: leaflet node {} at ({:.3g}, {:.3g}, {:.3g}) mm moves at {:.4g} mm/s, faster than {} "
+          "mm/s",
+          a, x_[a].x(), x_[a].y(), x_[a].z(), velocity[a].norm(), fastest_mm_per_s);
+    x_[a] += dt * velocity[a];
+  }
+}
+
+double ImmersedShell::largest_stretch() const {
+  const structure::ShellMesh& mesh = shell_.mesh();
+  double largest = 0;
+  for (const Triangle& t : mesh.triangles)
+    for (int e = 0; e < 3; ++e) {
+      const int a = t[e], b = t[(e + 1) % 3];
+      largest = std::max(
+          largest, (x_[a] - x_[b]).squaredNorm() / (mesh.reference[a] - mesh.reference[b]).squaredNorm());
+    }
+  return std::sqrt(largest);
+}
+
+}  // namespace valsalva::coupling

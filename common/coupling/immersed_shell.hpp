@@ -1,0 +1,55 @@
+// A thin shell without own mass that moves with the fluid: its nodes carry forces to the grid and take their
+// velocity from it. Clamped nodes stay where they are; what the shell pulls at them is the reaction of
+// whatever holds it. The work is divided among the ranks, positions and forces are the same on all of them.
+#pragma once
+
+#include <vector>
+
+#include "core/mpi.hpp"
+#include "coupling/repulsion.hpp"
+#include "structure/shell.hpp"
+
+namespace valsalva::coupling {
+
+class ImmersedShell {
+ public:
+  /// clamped: one a node. group: leaflet of each node, for the repulsion between leaflets.
+  ImmersedShell(MPI_Comm comm, structure::Shell shell, Points start, std::vector<std::uint8_t> clamped,
+                std::vector<int> group, const RepulsionParameters& repulsion);
+  ImmersedShell(const ImmersedShell&) = delete;
+  ImmersedShell& operator=(const ImmersedShell&) = delete;
+
+  const structure::Shell& shell() const { return shell_; }
+  const Points& x() const { return x_; }
+  void set_x(Points x);
+  bool clamped(std::size_t node) const { return clamped_[node] != 0; }
+
+  /// Elastic force and repulsion on every node, uN; zero at clamped nodes (collective).
+  void forces(Points& out);
+  /// Force of the shell on what holds its clamped nodes, uN, at the last forces().
+  const Vec3& pull_on_clamps() const { return pull_; }
+  /// The smallest node distance between leaflets at the last forces().
+  double nearest() const { return repulsion_.nearest(); }
+
+  /// The tangent (positive semi-definite) at the present shape; then out = K direction (collective).
+  void update_tangent() { tangent_.update(x_); }
+  void tangent_product(const Points& direction, Points& out) const;
+
+  /// x += dt u for free nodes. NumericalFailure when a node is not finite or faster than 2e4 mm/s.
+  void move(const Points& velocity, double dt);
+  /// The largest present length of a triangle's edge over its reference length.
+  double largest_stretch() const;
+
+ private:
+  MPI_Comm comm_;
+  structure::Part part_;
+  structure::Shell shell_;
+  structure::ShellTangent tangent_;
+  Repulsion repulsion_;
+  Points x_;
+  std::vector<std::uint8_t> clamped_;
+  Vec3 pull_ = Vec3::Zero();
+  mutable Points free_direction_;
+};
+
+}  // namespace valsalva::coupling
