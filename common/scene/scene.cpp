@@ -11,6 +11,7 @@ void declare_all(Schema& schema) {
   declare_device(schema);
   declare_deploy(schema);
   declare_report(schema);
+  declare_output(schema);
 }
 
 }  // namespace valsalva

@@ -16,5 +16,6 @@ void declare_native(Schema& schema);
 void declare_device(Schema& schema);
 void declare_deploy(Schema& schema);
 void declare_report(Schema& schema);
+void declare_output(Schema& schema);
 
 }  // namespace valsalva

@@ -1,7 +1,7 @@
 // How every stage writes, keeps and continues its states.
 //
 //   auto resumed = state::resume(context);                 // with --resume
-//   state::CheckpointClock clock;
+//   state::CheckpointClock clock(context);
 //   while (...) {
 //     step();
 //     if (clock.due(context.comm)) state::save(context, snapshot());
@@ -35,7 +35,8 @@ std::optional<State> resume(const StageContext& context);
 /// it.
 class CheckpointClock {
  public:
-  explicit CheckpointClock(double seconds = 60);
+  /// The interval is the case's output.checkpoint_s.
+  explicit CheckpointClock(const StageContext& context);
   bool due(MPI_Comm comm);
 
  private:
