@@ -50,8 +50,8 @@ std::optional<State> resume(const StageContext& context) {
   return state;
 }
 
-CheckpointClock::CheckpointClock(double seconds)
-    : last_(std::chrono::steady_clock::now()), seconds_(seconds) {}
+CheckpointClock::CheckpointClock(const StageContext& context)
+    : last_(std::chrono::steady_clock::now()), seconds_(context.scene.real("output.checkpoint_s")) {}
 
 bool CheckpointClock::due(MPI_Comm comm) {
   const auto now = std::chrono::steady_clock::now();
