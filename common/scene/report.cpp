@@ -4,7 +4,7 @@ namespace valsalva {
 
 void declare_report(Schema& schema) {
   schema.table("report", "The page that tells the story of a run");
-  schema.integer("report.picture_width_px", 800, {200, 4000}, "Width of a still picture in pixels");
+  schema.integer("report.picture_width_px", 680, {200, 4000}, "Width of a still picture in pixels");
   schema.integer("report.viewer_frames", 40, {2, 400},
                  "At most so many frames of the beat in the interactive view; more make the page larger");
 }

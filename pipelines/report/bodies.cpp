@@ -25,7 +25,7 @@ constexpr std::array<Style, 6> styles{
      {"calcium", "Calcium", {0.93f, 0.90f, 0.80f}, 1, false},
      {"lumen", "Lumen", {0.78f, 0.42f, 0.42f}, 0.22, true}}};
 
-Surface frame_tubes(const state::Mesh& mesh) {
+Surface frame_tubes(const state::Mesh& mesh, int sides) {
   const std::vector<Edge> edges = mesh.lines("frame");
   std::vector<double> radius(edges.size(), 0.18);
   const auto width = mesh.cell_data.find("width_mm"), depth = mesh.cell_data.find("depth_mm");
@@ -34,19 +34,19 @@ Surface frame_tubes(const state::Mesh& mesh) {
     for (std::size_t e = 0; e < edges.size() && e < w.size() && e < d.size(); ++e)
       radius[e] = 0.5 * std::sqrt(w[e] * d[e]);
   }
-  return tubes(mesh.points, edges, radius, 8);
+  return tubes(mesh.points, edges, radius, sides);
 }
 
 }  // namespace
 
-std::vector<Body> bodies_of(const state::State& state) {
+std::vector<Body> bodies_of(const state::State& state, int tube_sides) {
   std::vector<Body> bodies;
   for (const Style& style : styles) {
     if (!state.has_mesh(style.id)) continue;
     const state::Mesh& mesh = state.mesh(style.id);
     Body body{style.id, style.label, {}};
     if (body.id == "frame") {
-      body.surface = frame_tubes(mesh);
+      body.surface = frame_tubes(mesh, tube_sides);
     } else {
       body.surface.points = mesh.points;
       body.surface.triangles = mesh.triangles(style.id);
@@ -137,6 +137,33 @@ void read_slices(const state::State& state, Beat& beat, std::size_t frames) {
                                     p.begin() + static_cast<long>((f + 1) * samples));
 }
 
+double mean(const std::vector<double>& values, std::size_t begin, std::size_t end) {
+  double sum = 0;
+  for (std::size_t i = begin; i < end; ++i) sum += values[i];
+  return sum / static_cast<double>(end - begin);
+}
+
+void choose_frames(Beat& beat) {
+  const auto highest = [](const std::vector<double>& values) {
+    return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
+  };
+  std::vector<double> width, narrowness, speed, drop;
+  for (const Points& points : beat.valve) {
+    width.push_back(spread(points));
+    narrowness.push_back(-width.back());
+  }
+  beat.open = highest(width);
+  beat.closed = highest(narrowness);
+  const double wide = 0.3 * width[beat.closed] + 0.7 * width[beat.open];
+  const std::size_t samples = beat.nx * beat.nz;
+  for (std::size_t f = 0; f < beat.speed_cm_per_s.size(); ++f)
+    speed.push_back(width[f] < wide ? 0 : mean(beat.speed_cm_per_s[f], 0, samples));
+  for (const std::vector<double>& p : beat.pressure_mmHg)
+    drop.push_back(mean(p, samples - beat.nx, samples) - mean(p, 0, beat.nx));
+  if (!speed.empty()) beat.open = highest(speed);
+  if (!drop.empty()) beat.closed = highest(drop);
+}
+
 }  // namespace
 
 std::optional<Beat> beat_of(const state::State& state) {
@@ -158,10 +185,7 @@ std::optional<Beat> beat_of(const state::State& state) {
     beat.valve.push_back(std::move(points));
   }
   read_slices(state, beat, frames);
-  std::vector<double> width;
-  for (const Points& points : beat.valve) width.push_back(spread(points));
-  beat.open = static_cast<std::size_t>(std::max_element(width.begin(), width.end()) - width.begin());
-  beat.closed = static_cast<std::size_t>(std::min_element(width.begin(), width.end()) - width.begin());
+  choose_frames(beat);
   return beat;
 }
 

@@ -19,7 +19,7 @@ struct Body {
 
 /// Bodies of the state in drawing order; meshes that are not drawn (wall tetrahedra, centreline) are left
 /// out. Struts become tubes of the section's mean radius (0.18 mm where the mesh has no section).
-std::vector<Body> bodies_of(const state::State& state);
+std::vector<Body> bodies_of(const state::State& state, int tube_sides = 8);
 
 const Body* find_body(const std::vector<Body>& bodies, const std::string& id);
 
@@ -41,7 +41,10 @@ struct Beat {
   std::vector<std::vector<double>> speed_cm_per_s;  ///< frame by frame, x fastest
   std::vector<std::vector<double>> pressure_mmHg;   ///< may be empty
 
-  std::size_t open = 0, closed = 0;  ///< frames of the widest and the narrowest valve
+  /// The frames to show. Open: the fastest flow among those where the leaflets stand wide. Closed: the
+  /// largest pressure drop from the top of the slice to its bottom. By shape alone (widest, narrowest)
+  /// without slices.
+  std::size_t open = 0, closed = 0;
 };
 
 /// Nothing when the state has no frames; InputError when their shapes do not agree.

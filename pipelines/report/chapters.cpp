@@ -114,7 +114,7 @@ std::string force_curve(const StageData& crimp) {
   if (x.empty()) x = column({"radius", "_mm"});
   if (force.empty() || x.empty()) return {};
   const Quantity qx = quantity(x), qy = quantity(force);
-  return all_charts({{"Radial force against " + qx.words,
+  return all_charts({{"Radial force against diameter",
                       qx.words + " (" + qx.unit + ")",
                       qy.words + " (" + qy.unit + ")",
                       {{qy.words, *history.find(x), *history.find(force)}}}});

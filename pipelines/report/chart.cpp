@@ -183,7 +183,16 @@ std::vector<Chart> charts_by_unit(const Series& history, const std::string& x,
     for (double v : history.columns[c])
       if (std::isfinite(v)) size = std::max(size, std::abs(v));
     if (size == 0) continue;
-    const Quantity q = quantity(name);
+    Quantity q = quantity(name);
+    std::vector<double> column = history.columns[c];
+    if (q.unit == "s" && size < 0.01) {
+      q.unit = "µs";
+      for (double& v : column) v *= 1e6;
+      size *= 1e6;
+    }
+    const bool difference =
+        name.find("gradient") != std::string::npos || name.find("difference") != std::string::npos;
+    if (difference) q.unit += " ";  // a chart of its own: its zero means something else
     const auto fits = [&](const Group& g) {
       return !q.unit.empty() && g.unit == q.unit && g.chart.lines.size() < 6 && size < 100 * g.size &&
              g.size < 100 * size;
@@ -193,7 +202,7 @@ std::vector<Chart> charts_by_unit(const Series& history, const std::string& x,
       groups.push_back({q.unit, size, {}});
       group = groups.end() - 1;
     }
-    group->chart.lines.push_back({q.words, *abscissa, history.columns[c]});
+    group->chart.lines.push_back({q.words, *abscissa, std::move(column)});
   }
   const Quantity qx = quantity(x);
   std::vector<Chart> charts;
@@ -207,7 +216,7 @@ std::vector<Chart> charts_by_unit(const Series& history, const std::string& x,
         name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
       chart.title += (k + 1 == chart.lines.size() ? " and " : ", ") + name;
     }
-    chart.y_label = group.unit.empty() ? chart.title : group.unit;
+    chart.y_label = group.unit.empty() ? chart.title : group.unit.substr(0, group.unit.find(' '));
     charts.push_back(std::move(chart));
   }
   return charts;

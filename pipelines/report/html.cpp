@@ -70,7 +70,7 @@ Quantity quantity(const std::string& key) {
                                                                         {"_MiB", "MiB"},
                                                                         {"_HU", "HU"}};
   Quantity result;
-  std::string words = key;
+  std::string words = key.substr(key.find('.') + 1);
   for (const auto& [ending, unit] : endings)
     if (words.size() > ending.size() && words.ends_with(ending)) {
       result.unit = unit;

@@ -11,7 +11,9 @@ namespace valsalva::report {
 std::string escape(const std::string& text);
 std::string base64(const std::string& bytes);
 
-/// A key of a summary or a column of a history, "mean_gradient_mmHg": words and unit apart.
+/// A key of a summary or a column of a history, "mean_gradient_mmHg": words and unit apart. A stage before a
+/// point
+/// ("cycle.mean_gradient_mmHg") is left out of the words.
 struct Quantity {
   std::string words;  ///< "Mean gradient"
   std::string unit;   ///< "mmHg", "mL/s", "mm²"; empty for pure numbers

@@ -9,7 +9,7 @@ namespace valsalva::report {
 
 struct PageOptions {
   std::string title;        ///< one line below the case's name; may be empty
-  int picture_width = 800;  ///< pixels of a still picture
+  int picture_width = 680;  ///< pixels of a still picture
   int viewer_frames = 40;   ///< at most so many frames of the beat in the interactive view
 };
 

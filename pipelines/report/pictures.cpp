@@ -203,22 +203,31 @@ struct Slice {
   bool inside(const Vec3& x) const { return !lumen || lumen->value(x) < 0.25 * lumen->spacing; }
 };
 
+/// Bilinear in the slice; `refine` points a sample, so that the level set can cut the picture smoothly at the
+/// wall.
 Surface slice_surface(const Slice& slice, const std::vector<double>& values, double low, double high,
                       bool fading) {
+  constexpr std::size_t refine = 4;
   const Beat& beat = slice.beat;
+  const std::size_t columns = refine * (beat.nx - 1) + 1, rows = refine * (beat.nz - 1) + 1;
   Surface surface;
   surface.lit = false;
-  for (std::size_t k = 0; k < beat.nz; ++k)
-    for (std::size_t i = 0; i < beat.nx; ++i) {
-      const Vec3 x = beat.origin + Vec3(static_cast<double>(i) * beat.spacing.x(), 0,
-                                        static_cast<double>(k) * beat.spacing.z());
-      const double t = std::clamp((values[k * beat.nx + i] - low) / (high - low), 0.0, 1.0);
+  for (std::size_t k = 0; k < rows; ++k)
+    for (std::size_t i = 0; i < columns; ++i) {
+      const double gx = static_cast<double>(i) / refine, gz = static_cast<double>(k) / refine;
+      const std::size_t ci = std::min(i / refine, beat.nx - 2), ck = std::min(k / refine, beat.nz - 2);
+      const double wx = gx - static_cast<double>(ci), wz = gz - static_cast<double>(ck);
+      const double* v = &values[ck * beat.nx + ci];
+      const double value =
+          (1 - wz) * ((1 - wx) * v[0] + wx * v[1]) + wz * ((1 - wx) * v[beat.nx] + wx * v[beat.nx + 1]);
+      const double t = std::clamp((value - low) / (high - low), 0.0, 1.0);
+      const Vec3 x = beat.origin + Vec3(gx * beat.spacing.x(), 0, gz * beat.spacing.z());
       surface.points.push_back(x);
       surface.point_colours.push_back(heat(t));
       const double opacity = fading ? 0.95 * std::min(1.0, 4.5 * t) : 0.92;
       surface.point_opacity.push_back(slice.inside(x) ? static_cast<float>(opacity) : 0.0f);
       if (i == 0 || k == 0) continue;
-      const int d = static_cast<int>(k * beat.nx + i), c = d - 1, b = d - static_cast<int>(beat.nx),
+      const int d = static_cast<int>(k * columns + i), c = d - 1, b = d - static_cast<int>(columns),
                 a = b - 1;
       surface.triangles.push_back({a, b, d});
       surface.triangles.push_back({a, d, c});

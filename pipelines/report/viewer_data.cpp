@@ -33,15 +33,21 @@ std::string packed(const Points& points, const Box& box) {
   return base64(bytes_of(values));
 }
 
+template <class T>
+std::string indices_of(const Surface& surface) {
+  std::vector<T> indices;
+  for (const Triangle& t : surface.triangles)
+    for (int node : t) indices.push_back(static_cast<T>(node));
+  return bytes_of(indices);
+}
+
 json vector_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
 json body_json(const Body& body, const Box& box) {
   const Surface& surface = body.surface;
-  std::vector<std::uint32_t> indices;
-  for (const Triangle& t : surface.triangles)
-    for (int node : t) indices.push_back(static_cast<std::uint32_t>(node));
+  const bool narrow = surface.points.size() <= 65536;
   const Colour& c = surface.colour;
   return {{"id", body.id},
           {"label", body.label},
@@ -51,7 +57,9 @@ json body_json(const Body& body, const Box& box) {
           {"low", vector_of(box.low)},
           {"extent", vector_of(box.high - box.low)},
           {"points", packed(surface.points, box)},
-          {"triangles", base64(bytes_of(indices))}};
+          {"index_bits", narrow ? 16 : 32},
+          {"triangles",
+           base64(narrow ? indices_of<std::uint16_t>(surface) : indices_of<std::uint32_t>(surface))}};
 }
 
 class Collector {
@@ -69,7 +77,7 @@ class Collector {
       bodies.push_back(index);
       if (hidden.count(id)) invisible.push_back(index);
     };
-    for (Body& body : bodies_of(*state)) {
+    for (Body& body : bodies_of(*state, 5)) {
       if (left_out.count(body.id) || body.id == "lumen" || body.id == "calcium") continue;
       if (body.id != "frame" && body.surface.triangles.size() > most_triangles && stage != "cycle")
         body.surface = simplified(body.surface, most_triangles);

@@ -53,7 +53,7 @@
   const meshes = data.bodies.map(body => {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(positions(body.points, body.low, body.extent), 3));
-    geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes(body.triangles).buffer), 1));
+    geometry.setIndex(new THREE.BufferAttribute(new (body.index_bits === 16 ? Uint16Array : Uint32Array)(bytes(body.triangles).buffer), 1));
     geometry.computeVertexNormals();
     const seeThrough = body.opacity < 1;
     const material = new THREE.MeshPhongMaterial({
