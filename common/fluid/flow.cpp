@@ -241,7 +241,7 @@ void Flow::report_not_finite() const {
     for (int j = grid.cells[1] - 1; j >= 0; --j) {
       for (int i = grid.cells[0] - 1; i >= 0; --i) {
         double sum = pressure_(i, j, k);
-        for (int d = 0; d < 3; ++d) sum += velocity_[d](i, j, k);
+        for (int d = 0; d < 3; ++d) sum += std::pow(velocity_[d](i, j, k), 2);
         if (!std::isfinite(sum))
           found = (static_cast<double>(k + slab_.first) * grid.cells[1] + j) * grid.cells[0] + i;
       }

@@ -7,9 +7,8 @@
 //
 //   N = -div(u u) + nu lap u      (momentum.hpp)
 //
-// Second order in space and in time for the velocity (first order at penalised walls). Explicit, so
-// dt < h / (|u|+|v|+|w|) about, and dt < h^2 / (6 nu). The open ends keep the prescribed pressure on the
-// side.
+// Second order in space and in time for the velocity (first order at penalised walls). Explicit: stable for
+// dt (|u|+|v|+|w|)/h below about 0.5 to 1 and dt < h^2 / (12 nu). The open ends keep the prescribed pressure.
 //
 // Order of calls in one step, forces known at its start:
 //     flow.clear_force(); (spread into flow.force()); flow.predict(dt); flow.project(dt);
