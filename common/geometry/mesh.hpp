@@ -1,6 +1,8 @@
 // Plain meshes. Lengths in mm.
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "core/types.hpp"
 
 namespace valsalva::geometry {

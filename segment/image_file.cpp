@@ -1,0 +1,145 @@
+// The one file that knows ITK.
+#include <itkGDCMImageIO.h>
+#include <itkGDCMSeriesFileNames.h>
+#include <itkImage.h>
+#include <itkImageFileReader.h>
+#include <itkImageFileWriter.h>
+#include <itkImageSeriesReader.h>
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
+
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "image.hpp"
+
+namespace valsalva::segment {
+namespace {
+
+namespace fs = std::filesystem;
+using Volume = itk::Image<float, 3>;
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+itk::ImageIOBase::Pointer format_of(const fs::path& path) {
+  const std::string name = path.filename().string();
+  if (ends_with(name, ".nii") || ends_with(name, ".nii.gz")) return itk::NiftiImageIO::New().GetPointer();
+  if (ends_with(name, ".nrrd") || ends_with(name, ".nhdr")) return itk::NrrdImageIO::New().GetPointer();
+  if (ends_with(name, ".mha") || ends_with(name, ".mhd")) return itk::MetaImageIO::New().GetPointer();
+  throw InputError(
+      "{}: the ending is none that is known for an image; expected .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, "
+      "or "
+      "a folder with a DICOM series",
+      path.string());
+}
+
+Volume::Pointer read_file(const fs::path& path) {
+  const auto format = format_of(path);
+  format->SetFileName(path.string());
+  format->ReadImageInformation();
+  unsigned real_dimensions = 0;
+  for (unsigned d = 0; d < format->GetNumberOfDimensions(); ++d)
+    real_dimensions += format->GetDimensions(d) > 1;
+  if (real_dimensions != 3 || format->GetNumberOfComponents() != 1)
+    throw InputError(
+        "{}: has {} dimensions and {} values a voxel; expected one scalar volume (pick one phase)",
+        path.string(), real_dimensions, format->GetNumberOfComponents());
+  for (unsigned d = 0; d < 3; ++d)
+    if (!(format->GetSpacing(d) > 0))
+      throw InputError("{}: spacing {} mm along axis {}; expected a positive one, correct the header",
+                       path.string(), format->GetSpacing(d), d);
+  const auto reader = itk::ImageFileReader<Volume>::New();
+  reader->SetImageIO(format);
+  reader->SetFileName(path.string());
+  reader->Update();
+  return reader->GetOutput();
+}
+
+Volume::Pointer read_series(const fs::path& folder) {
+  const auto names = itk::GDCMSeriesFileNames::New();
+  names->SetDirectory(folder.string());
+  std::vector<std::string> longest;
+  for (const std::string& series : names->GetSeriesUIDs()) {
+    const auto& files = names->GetFileNames(series);
+    if (files.size() > longest.size()) longest.assign(files.begin(), files.end());
+  }
+  if (longest.size() < 2)
+    throw InputError("{}: the folder holds no DICOM series of two or more slices", folder.string());
+  const auto reader = itk::ImageSeriesReader<Volume>::New();
+  reader->SetImageIO(itk::GDCMImageIO::New());
+  reader->SetFileNames(longest);
+  reader->Update();
+  return reader->GetOutput();
+}
+
+}  // namespace
+
+Image read_image(const fs::path& path) {
+  if (!fs::exists(path))
+    throw InputError("{}: no such image; supply this file, or set anatomy.image to yours", path.string());
+  Volume::Pointer volume;
+  try {
+    volume = fs::is_directory(path) ? read_series(path) : read_file(path);
+  } catch (const itk::ExceptionObject& error) {
+    throw InputError("{}: cannot be read as an image ({}); is it cut short, or of another format?",
+                     path.string(), error.GetDescription());
+  }
+  Image image;
+  const auto size = volume->GetLargestPossibleRegion().GetSize();
+  for (int d = 0; d < 3; ++d) {
+    image.size[d] = int(size[d]);
+    image.origin[d] = volume->GetOrigin()[d];
+    image.spacing[d] = volume->GetSpacing()[d];
+    for (int e = 0; e < 3; ++e) image.direction(d, e) = volume->GetDirection()(d, e);
+  }
+  if (!(std::abs(image.direction.determinant()) > 1e-3) || !image.origin.allFinite() ||
+      !image.spacing.allFinite() || !(image.spacing.minCoeff() > 0))
+    throw InputError("{}: spacing, origin or direction is singular or not finite; correct the header",
+                     path.string());
+  const float* first = volume->GetBufferPointer();
+  image.values.assign(first, first + std::size_t(size[0]) * size[1] * size[2]);
+  for (std::size_t n = 0; n < image.values.size(); ++n)
+    if (!std::isfinite(image.values[n]))
+      throw InputError("{}: voxel ({}, {}, {}) is {}; expected finite values, export the image again",
+                       path.string(), n % size[0], n / size[0] % size[1], n / size[0] / size[1],
+                       image.values[n]);
+  return image;
+}
+
+void write_image(const fs::path& path, const Image& image) {
+  using Stored = itk::Image<short, 3>;
+  const auto volume = Stored::New();
+  Stored::RegionType region;
+  region.SetSize({itk::SizeValueType(image.size[0]), itk::SizeValueType(image.size[1]),
+                  itk::SizeValueType(image.size[2])});
+  volume->SetRegions(region);
+  Stored::PointType origin;
+  Stored::SpacingType spacing;
+  Stored::DirectionType direction;
+  for (int d = 0; d < 3; ++d) {
+    origin[d] = image.origin[d];
+    spacing[d] = image.spacing[d];
+    for (int e = 0; e < 3; ++e) direction(d, e) = image.direction(d, e);
+  }
+  volume->SetOrigin(origin);
+  volume->SetSpacing(spacing);
+  volume->SetDirection(direction);
+  volume->Allocate();
+  std::transform(image.values.begin(), image.values.end(), volume->GetBufferPointer(),
+                 [](float value) { return short(std::lround(std::clamp(value, -32768.0f, 32767.0f))); });
+  const auto writer = itk::ImageFileWriter<Stored>::New();
+  writer->SetImageIO(format_of(path));
+  writer->SetFileName(path.string());
+  writer->SetUseCompression(true);
+  writer->SetInput(volume);
+  try {
+    writer->Update();
+  } catch (const itk::ExceptionObject& error) {
+    throw EnvironmentError("{}: cannot be written ({})", path.string(), error.GetDescription());
+  }
+}
+
+}  // namespace valsalva::segment

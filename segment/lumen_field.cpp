@@ -1,0 +1,82 @@
+#include "lumen_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/level_set.hpp"
+
+namespace valsalva::segment {
+namespace {
+
+using geometry::GridSdf;
+
+GridSdf shifted(GridSdf field, double by) {
+  for (float& value : field.values) value += float(by);
+  return field;
+}
+
+Vec3 position(const GridSdf& grid, int i, int j, int k) {
+  return grid.origin + grid.spacing * Vec3(i, j, k);
+}
+
+}  // namespace
+
+GridSdf closed(const GridSdf& distance, double radius_mm) {
+  const GridSdf grown = geometry::redistanced(geometry::without_cavities(shifted(distance, -radius_mm)));
+  GridSdf result = shifted(grown, radius_mm);
+  // Closing never removes: round-off of the two distances must not either.
+  for (std::size_t n = 0; n < result.values.size(); ++n)
+    result.values[n] = std::min(result.values[n], distance.values[n]);
+  return geometry::redistanced(geometry::without_cavities(result));
+}
+
+GridSdf opened(const GridSdf& distance, double radius_mm, const Vec3& seed) {
+  const GridSdf core = geometry::component_at(shifted(distance, radius_mm), seed);
+  GridSdf result = shifted(geometry::redistanced(core), -radius_mm);
+  for (std::size_t n = 0; n < result.values.size(); ++n)
+    result.values[n] = std::max(result.values[n], distance.values[n]);
+  return geometry::redistanced(geometry::component_at(result, seed));
+}
+
+void limit_to_channel(GridSdf& field, const geometry::Loop& annulus, double margin_mm) {
+  const auto [nx, ny, nz] = field.dimensions;
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const Vec3 x = position(field, i, j, 0);
+      const float guard = float(geometry::distance_to(annulus, {x.x(), x.y()}) - margin_mm);
+      for (int k = 0; k < nz && position(field, i, j, k).z() < 0; ++k) {
+        float& value = field.values[(std::size_t(k) * ny + j) * nx + i];
+        value = std::max(value, guard);
+      }
+    }
+}
+
+void continue_straight(GridSdf& field, double z_lower_mm, double z_upper_mm) {
+  const auto [nx, ny, nz] = field.dimensions;
+  const GridSdf before = field;
+  for (int k = 0; k < nz; ++k) {
+    const double z = field.origin.z() + k * field.spacing;
+    if (z > z_lower_mm && z < z_upper_mm) continue;
+    const double held = std::clamp(z, z_lower_mm, z_upper_mm);
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        Vec3 x = position(field, i, j, k);
+        x.z() = held;
+        field.values[(std::size_t(k) * ny + j) * nx + i] = float(before.value(x));
+      }
+  }
+}
+
+bool touches_side(const GridSdf& field, double z_lower_mm, double z_upper_mm, Vec3* where) {
+  const auto [nx, ny, nz] = field.dimensions;
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        if (i > 0 && j > 0 && i + 1 < nx && j + 1 < ny) continue;
+        *where = position(field, i, j, k);
+        if (where->z() >= z_lower_mm && where->z() <= z_upper_mm && field.at(i, j, k) < 0) return true;
+      }
+  return false;
+}
+
+}  // namespace valsalva::segment

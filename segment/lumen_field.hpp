@@ -1,0 +1,20 @@
+// Steps of the segmentation on the working grid, each a field to a field; negative inside.
+#pragma once
+
+#include "geometry/grid_sdf.hpp"
+#include "geometry/planes.hpp"
+
+namespace valsalva::segment {
+
+/// Fills gaps narrower than twice the radius; a signed distance in, a signed distance out.
+geometry::GridSdf closed(const geometry::GridSdf& distance, double radius_mm);
+/// Removes parts narrower than twice the radius and what hangs on them; keeps the piece at `seed`.
+geometry::GridSdf opened(const geometry::GridSdf& distance, double radius_mm, const Vec3& seed);
+/// Below z = 0 only what lies within `margin` of the contour's inside stays.
+void limit_to_channel(geometry::GridSdf& field, const geometry::Loop& annulus, double margin_mm);
+/// Every layer below z_lower (above z_upper) becomes the layer at that height.
+void continue_straight(geometry::GridSdf& field, double z_lower_mm, double z_upper_mm);
+/// Does the inside touch a side face (x or y) between the two heights? Where first.
+bool touches_side(const geometry::GridSdf& field, double z_lower_mm, double z_upper_mm, Vec3* where);
+
+}  // namespace valsalva::segment
