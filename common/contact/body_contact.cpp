@@ -48,8 +48,8 @@ void BodyContact::evaluate(const Points& x, const std::vector<FeaturePair>& pair
       const FeaturePair& pair = pairs[i];
       const Nearest near = distance(x, pair.node);
       const double d = near.distance, h = pair.contact_distance_mm;
-      own.report.smallest_distance_mm = std::min(own.report.smallest_distance_mm, d);
       if (d >= h) continue;
+      own.report.smallest_distance_mm = std::min(own.report.smallest_distance_mm, d);
       const Pressure p = normal_pressure(law_, pair.modulus_area_uN, d, h);
       own.energy += p.energy;
       own.active.push_back({pair.node, near.weight, p.pressure * near.direction});
@@ -102,8 +102,9 @@ void BodyContact::add_stiffness_bound(const structure::Configuration& now,
                                       structure::StiffnessBound& out) const {
   constexpr double approach = 0.8;
   const auto add = [&](const FeaturePair& pair, const Nearest& near) {
+    // Pairs out of contact may or may not be listed, depending on the list's age: they must not count.
+    if (near.distance >= pair.contact_distance_mm) return;
     const double d = approach * near.distance;
-    if (d >= pair.contact_distance_mm) return;
     const Pressure p = normal_pressure(law_, pair.modulus_area_uN, d, pair.contact_distance_mm);
     const double lateral = p.pressure / std::max(d, 1e-3 * pair.contact_distance_mm);
     for (int k = 0; k < 4; ++k)
@@ -135,6 +136,7 @@ int BodyContact::limit_velocities(structure::System& system, double dt_s) const 
   if (std::sqrt(fastest) * dt_s <= 0.5 * guard_fraction * floor_mm) return 0;
   std::vector<double> room(now.x.size(), candidates_.parameters().near_skin_mm);
   const auto narrow = [&](const FeaturePair& pair, double distance) {
+    if (distance >= pair.contact_distance_mm) return;
     for (int node : pair.node) room[node] = std::min(room[node], distance);
   };
   for (const auto& pair : candidates_.point_triangle())

@@ -20,7 +20,7 @@ struct ContactReport {
   long active = 0;                  ///< pairs nearer than their contact distance
   double penetration_mm = 0;        ///< largest h - d
   double smallest_ratio = 1;        ///< smallest d / h of active pairs
-  double smallest_distance_mm = 0;  ///< of all pairs of the near list
+  double smallest_distance_mm = 0;  ///< of active pairs; at most the near skin
 };
 
 class BodyContact : public structure::ForceTerm {

@@ -9,6 +9,8 @@ void declare_all(Schema& schema) {
   declare_mesh(schema);
   declare_native(schema);
   declare_device(schema);
+  declare_contact(schema);
+  declare_crimp(schema);
   declare_deploy(schema);
   declare_report(schema);
   declare_output(schema);

@@ -14,6 +14,8 @@ void declare_phantom(Schema& schema);
 void declare_mesh(Schema& schema);
 void declare_native(Schema& schema);
 void declare_device(Schema& schema);
+void declare_contact(Schema& schema);
+void declare_crimp(Schema& schema);
 void declare_deploy(Schema& schema);
 void declare_report(Schema& schema);
 void declare_output(Schema& schema);

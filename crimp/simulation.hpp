@@ -1,0 +1,62 @@
+// Crimping as explicit dynamics: the device, the crimper that closes about it, contact of everything with
+// everything, then rest in the closed crimper.
+#pragma once
+
+#include <optional>
+
+#include "contact/body_contact.hpp"
+#include "contact/tool_contact.hpp"
+#include "crimper.hpp"
+#include "device.hpp"
+#include "structure/integrator.hpp"
+
+namespace valsalva::crimp {
+
+/// Contact radii. Struts: half the smaller side against tissue and struts, half the depth against the crimper
+/// (a strut's outer face). Tissue: half of fraction times thickness.
+contact::CollisionMesh collision_mesh(const Device& device, const structure::System& system, double fraction);
+std::vector<contact::SurfaceNode> crimper_nodes(const Device& device, const structure::System& system,
+                                                double fraction);
+
+class Simulation {
+ public:
+  Simulation(Device device, const Parameters& p);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  void step();
+  bool closed() const { return system_.state.time_s >= crimper_.duration_s(); }
+  /// Closed, and at rest or out of time.
+  bool done() const;
+  bool settled() const;
+  /// Longest possible duration, for the progress display.
+  double longest_s() const { return crimper_.duration_s() + p_.settle_s; }
+
+  const Device& device() const { return device_; }
+  const structure::System& system() const { return system_; }
+  const structure::Integrator& integrator() const { return *integrator_; }
+  const contact::BodyContact& body_contact() const { return *bodies_; }
+  const contact::ToolContact& tool() const { return *tool_; }
+  const Crimper& crimper() const { return crimper_; }
+  double crimper_radius_mm() const { return crimper_.radius_mm(system_.state.time_s); }
+  double radial_force_uN() const { return tool_->radial_force_uN(system_.state); }
+  double crimper_work_nJ() const { return work_; }
+  /// How often the step guard slowed a node.
+  long slowed() const { return slowed_; }
+
+  structure::Snapshot save() const;
+  void restore(const structure::Snapshot& snapshot);
+
+ private:
+  Device device_;
+  Parameters p_;
+  structure::System system_;
+  Crimper crimper_;
+  std::shared_ptr<contact::BodyContact> bodies_;
+  std::shared_ptr<contact::ToolContact> tool_;
+  std::optional<structure::Integrator> integrator_;
+  double work_ = 0;
+  long slowed_ = 0;
+};
+
+}  // namespace valsalva::crimp
