@@ -127,7 +127,7 @@ void Shell::build_hinges(const Bending& bending) {
                             (12 * (1 - bending.poisson * bending.poisson));
     const double length2 = (mesh_.reference[b] - mesh_.reference[a]).squaredNorm();
     hinges_.push_back(
-        {{a, b, both[0].second, both[1].second}, 0, 3 * rigidity * length2 / (one.area + two.area)});
+        {{a, b, both[0].second, both[1].second}, 0, rigidity * length2 / (one.area + two.area)});
     hinges_.back().rest_angle = hinge_angle(mesh_.reference, hinges() - 1);
   }
 }

@@ -1,11 +1,14 @@
 // A thin shell: constant-strain triangles for the membrane, hinges for bending.
 //
-// Membrane: F = D_s D_m^-1 (3x2), C = F^T F, energy t A W(C) with a plane-stress law
-// (materials/plane_stress.hpp). Bending: E = 1/2 D 3 |e|^2 / (A1 + A2) (theta - theta0)^2 at every inner edge
-// e, theta the angle between the normals of its two triangles, theta0 that of the reference shape, D = E t^3
-// / (12 (1 - nu^2)). Source: Grinspun, Hirani, Desbrun and Schroeder 2003, Discrete Shells, eq. 2. Hinges
-// depend on the mesh: exact for bending along directions that the mesh resolves evenly, stiffer or softer by
-// tens of percent on skewed ones.
+// Membrane: F = D_s D_m^-1 (3x2), C = F^T F, energy t A W(C) with a plane-stress law of
+// materials/plane_stress.hpp.
+//
+// Bending: E = 1/2 D |e|^2 / (A1 + A2) (theta - theta0)^2 at every inner edge e, theta the angle between the
+// normals of its two triangles, theta0 that of the reference shape, D = E t^3 / (12 (1 - nu^2)). The form is
+// that of Grinspun, Hirani, Desbrun and Schroeder 2003, Discrete Shells, eq. 2; the constant is the one that
+// gives the plate's energy when a regular mesh is rolled up along its lines (their 3 |e|^2/A would be three
+// times too stiff), and agrees with Seung and Nelson 1988 on equilateral triangles. Hinges depend on the
+// mesh: on skewed ones they are off by tens of percent, and refinement does not mend it.
 //
 // Limits: thin (thickness below about the edge length), no transverse shear.
 // Lengths mm, stress Pa, energy nJ, force uN.
@@ -89,7 +92,7 @@ class Shell {
   };
   struct Hinge {
     std::array<int, 4> nodes;      // edge 0-1, opposite 2 and 3
-    double rest_angle, stiffness;  // stiffness = 3 D |e|^2 / (A1 + A2)
+    double rest_angle, stiffness;  // stiffness = D |e|^2 / (A1 + A2)
   };
   double element_forces(const Points& x, int offset, int element, std::array<Vec3, 3>& f) const;
   double hinge_forces(const Points& x, int offset, int hinge, std::array<Vec3, 4>& f) const;
