@@ -68,13 +68,20 @@ Parameters read_parameters(const Case& scene, std::optional<double> recommended_
   return p;
 }
 
+Frame make_frame(const Parameters& parameters) {
+  return parameters.graph ? read_graph(*parameters.graph, parameters.beams_per_strut)
+                          : build_frame(parameters.device.frame);
+}
+
 Assembly assemble(const Parameters& parameters) {
   Assembly a;
   const Device& device = parameters.device;
-  a.frame = parameters.graph ? read_graph(*parameters.graph, parameters.beams_per_strut)
-                             : build_frame(device.frame);
+  a.frame = make_frame(parameters);
   a.measures = measure(a.frame);
   a.nominal_size_mm = device.nominal_size_mm > 0 ? device.nominal_size_mm : a.measures.inflow_diameter_mm;
+  if (!parameters.graph)
+    a.closed_diameter_mm =
+        closed_diameter_mm(device.frame.cells, device.frame.width_mm, device.frame.depth_mm);
   if (!parameters.tissue) return a;
 
   if (parameters.graph) {
@@ -99,6 +106,7 @@ std::map<std::string, double> metrics_of(const Assembly& a) {
                                   {"outflow_diameter_mm", a.measures.outflow_diameter_mm},
                                   {"height_mm", a.measures.height_mm},
                                   {"nominal_size_mm", a.nominal_size_mm}};
+  if (a.closed_diameter_mm > 0) m["closed_diameter_mm"] = a.closed_diameter_mm;
   if (!a.crown) return m;
   const LeafletMeasures& l = a.leaflet_measures;
   m["leaflet_nodes"] = static_cast<double>(a.leaflets.points.size());

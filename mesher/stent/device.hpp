@@ -29,12 +29,14 @@ struct Assembly {
   double nominal_size_mm = 0;
   Frame frame;
   FrameMeasures measures;
+  double closed_diameter_mm = 0;  ///< outer, all struts of a row side by side; 0: not known (graph)
   std::optional<Crown> crown;
   std::array<double, 3> commissures{};  ///< angles, rad
   Tissue leaflets, skirt;               ///< empty without tissue
   LeafletMeasures leaflet_measures;
 };
 
+Frame make_frame(const Parameters& parameters);
 Assembly assemble(const Parameters& parameters);
 
 /// Metrics by the names of docs/architecture.md, and further ones of the tissue.

@@ -65,6 +65,35 @@ void cut_into_beams(Frame& frame, const Strut& strut, int beams, Curve&& point) 
   frame.strut_nodes.push_back(std::move(chain));
 }
 
+/// Crossings of one row have nearly the same height: their mean radius is a point of the profile.
+Profile fitted_profile(Points crossings, const std::string& what) {
+  std::sort(crossings.begin(), crossings.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
+  constexpr double row_mm = 1.0;
+  std::vector<double> heights, radii;
+  for (std::size_t first = 0; first < crossings.size();) {
+    std::size_t last = first;
+    double z = 0, r = 0;
+    for (; last < crossings.size() && crossings[last].z() - crossings[first].z() < row_mm; ++last)
+      z += crossings[last].z(), r += radius(crossings[last]);
+    const double count = static_cast<double>(last - first);
+    heights.push_back(z / count), radii.push_back(r / count);
+    first = last;
+  }
+  return Profile(std::move(heights), std::move(radii), what);
+}
+
+/// From a to b, straight in the unrolled plane; the ends' distances from the profile fade into each other. A
+/// strut over more than a sixth of the circumference does not follow the surface: straight.
+Vec3 on_surface(const Profile& profile, const Vec3& a, const Vec3& b, double t) {
+  const double from = std::atan2(a.y(), a.x());
+  const double turn = std::remainder(std::atan2(b.y(), b.x()) - from, 2 * pi);
+  if (std::abs(turn) > pi / 3) return a + t * (b - a);
+  const double z = std::lerp(a.z(), b.z(), t);
+  const double r =
+      profile.radius(z) + std::lerp(radius(a) - profile.radius(a.z()), radius(b) - profile.radius(b.z()), t);
+  return {r * std::cos(from + t * turn), r * std::sin(from + t * turn), z};
+}
+
 }  // namespace
 
 double closed_diameter_mm(int cells, double width_mm, double depth_mm) {
@@ -159,28 +188,13 @@ Frame frame_from_struts(const Points& crossings, const std::vector<Strut>& strut
   for (const Vec3& x : crossings) low = std::min(low, x.z());
   for (Vec3& x : frame.nodes) x.z() -= low;
   frame.crossings = n;
+  frame.profile = fitted_profile(frame.nodes, label + ": radii of the nodes about the z axis");
   for (const Strut& strut : struts) {
     frame.max_depth_mm = std::max(frame.max_depth_mm, strut.depth_mm);
     const Vec3 a = frame.nodes[strut.from], b = frame.nodes[strut.to];
-    cut_into_beams(frame, strut, beams_per_strut, [&](double t) { return Vec3(a + t * (b - a)); });
+    cut_into_beams(frame, strut, beams_per_strut,
+                   [&](double t) { return on_surface(frame.profile, a, b, t); });
   }
-
-  // Crossings of one row have nearly the same height: their mean radius is a point of the profile.
-  std::vector<Vec3> sorted(frame.nodes.begin(), frame.nodes.begin() + n);
-  std::sort(sorted.begin(), sorted.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
-  constexpr double row_mm = 1.0;
-  std::vector<double> heights, radii;
-  for (std::size_t first = 0; first < sorted.size();) {
-    std::size_t last = first;
-    double z = 0, r = 0;
-    for (; last < sorted.size() && sorted[last].z() - sorted[first].z() < row_mm; ++last)
-      z += sorted[last].z(), r += radius(sorted[last]);
-    const double count = static_cast<double>(last - first);
-    heights.push_back(z / count), radii.push_back(r / count);
-    first = last;
-  }
-  frame.profile =
-      Profile(std::move(heights), std::move(radii), label + ": radii of the nodes about the z axis");
   return frame;
 }
 

@@ -54,10 +54,10 @@ Frame build_frame(const FrameDesign& design);
 /// The smallest outer diameter at which all struts of the densest row stand side by side.
 double closed_diameter_mm(int cells, double width_mm, double depth_mm);
 
-/// From crossings and straight struts (a graph file); the profile is fitted through the crossings' radii.
-/// InputError names the node or strut: fewer than two nodes, not finite, an end that does not exist, zero
-/// length, the same strut twice, a node without struts, parts that are not connected, a section that is not
-/// positive or thicker than the strut is long.
+/// From crossings and struts (a graph file); the profile is fitted through the crossings' radii, struts are
+/// straight in the unrolled plane. InputError names the node or strut: fewer than two nodes, not finite, an
+/// end that does not exist, zero length, the same strut twice, a node without struts, parts that are not
+/// connected, a section that is not positive or thicker than the strut is long.
 Frame frame_from_struts(const Points& crossings, const std::vector<Strut>& struts, int beams_per_strut,
                         const std::string& label);
 

@@ -1,4 +1,4 @@
-// A frame as a centreline graph: a JSON file of crossings and straight struts.
+// A frame as a centreline graph: a JSON file of crossings and struts.
 //
 //   { "format": "valsalva-frame-graph", "version": 1,
 //     "section_mm": [0.25, 0.45],                     // width (circumferential), depth (radial): the default
@@ -6,7 +6,8 @@
 //     "struts": [[0, 1], [1, 7, 0.30, 0.45], ...] }    // node, node [, own width, own depth]
 //
 // The axis of the device is z, downstream positive; heights are shifted so that the lowest node is at 0.
-// Curved struts are given by further nodes. Lengths mm.
+// Struts are straight in the unrolled plane (angle, height); other curves are given by further nodes. Lengths
+// mm.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +20,8 @@ namespace valsalva::stent {
 /// everything that frame_from_struts refuses.
 Frame read_graph(const std::filesystem::path& file, int beams_per_strut);
 
-/// The text of a graph file of this frame, beams joined to struts again. Curvature within struts is lost.
+/// The text of a graph file of this frame, beams joined to struts again. The curve of a strut between its
+/// crossings is lost.
 std::string graph_text(const Frame& frame);
 
 }  // namespace valsalva::stent

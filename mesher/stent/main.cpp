@@ -131,7 +131,11 @@ void check(const Case& scene) {
   if (!scene.has("device"))
     throw InputError("{}: the scene has no [device] table; there is no device to make",
                      scene.file().string());
-  if (!size_comes_from_segment(scene)) read_parameters(scene, std::nullopt);
+  if (size_comes_from_segment(scene)) return;
+  const Parameters parameters = read_parameters(scene, std::nullopt);
+  make_frame(parameters);
+  if (parameters.tissue && !parameters.graph)
+    crown_of_rows(parameters.device.frame, parameters.device.nadir_mm, parameters.device.commissure_mm);
 }
 
 Estimate estimate(const Case& scene, int) {
