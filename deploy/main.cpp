@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
        "Places the device, opens the native leaflets, releases and settles it",
        "valsalva-deploy CASE.toml --set deploy.depth_mm=4 --set deploy.release=sheath",
        valsalva::declare_all,
-       {"deploy", "device", "native", "mesh"},
+       {"deploy", "contact", "device", "native", "mesh"},
        run,
        estimate,
        check});

@@ -17,6 +17,7 @@ state::Mesh shell_now(const state::State& parent, const ShellBody& body, const S
     return mesh;
   }
   mesh.points = s.points(body.name);
+  mesh.point_data.erase("velocity");
   const int offset = s.system().body(body.name).offset;
   std::vector<double> stress, stretch;
   for (int e = 0; e < body.shell->elements(); ++e) {
@@ -31,8 +32,7 @@ state::Mesh shell_now(const state::State& parent, const ShellBody& body, const S
 
 void copy_entries(const state::State& from, state::State& to) {
   for (const auto& [name, array] : from.restart)
-    if (name.find("/velocity") == std::string::npos && name.find("snapshot/") == std::string::npos)
-      to.restart[name] = array;
+    if (!name.starts_with("integrator/") && name != "crimp/history") to.restart[name] = array;
   for (const auto& [name, text] : from.texts) to.texts[name] = text;
 }
 
@@ -49,6 +49,7 @@ state::State snapshot(const StageContext& context, const Simulation& s, const In
   if (in.native) out.meshes[in.native->name] = shell_now(in.mesher, *in.native, s);
   state::Mesh frame = in.crimp.mesh("frame");
   const bool placed = s.has("frame");
+  frame.point_data.erase("velocity");
   frame.points = placed ? s.points("frame") : in.frame.points;
   out.meshes["frame"] = std::move(frame);
   if (placed) {

@@ -40,7 +40,10 @@ Parameters read_parameters(const Case& scene) {
   p.friction = scene.real("deploy.wall_friction");
   p.wall_stiffness = scene.real("deploy.wall_stiffness_kPa_per_mm") * units::pa_per_kPa;
   p.tissue_wall_stiffness = scene.real("deploy.tissue_wall_stiffness_kPa_per_mm") * units::pa_per_kPa;
-  p.contact_modulus = scene.real("deploy.contact_modulus_kPa") * units::pa_per_kPa;
+  p.law = scene.text("contact.law") == "penalty" ? contact::Law::penalty : contact::Law::barrier;
+  p.candidates = {scene.real("contact.modulus_kPa") * units::pa_per_kPa, scene.real("contact.rest_factor"),
+                  scene.real("contact.wide_skin_mm"), scene.real("contact.near_skin_mm")};
+  p.thickness_fraction = scene.real("contact.tissue_compressed_thickness_fraction");
   p.tie_stiffness = scene.real("deploy.tie_stiffness_N_per_mm") * units::uN_per_N;
   p.penetration_tolerance = scene.real("deploy.penetration_tolerance_mm");
   p.apposition_gap = scene.real("deploy.apposition_gap_mm");

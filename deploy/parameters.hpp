@@ -1,6 +1,8 @@
 // What the case asks of a deployment, in internal units (mm, g, s, Pa, uN).
 #pragma once
 
+#include "contact/candidates.hpp"
+#include "contact/pressure_law.hpp"
 #include "core/case.hpp"
 #include "materials/hgo.hpp"
 #include "structure/beam.hpp"
@@ -22,7 +24,10 @@ struct Parameters {
   double hold_stiffness = 0;
   double step_s = 1e-5;
   double friction = 0, wall_stiffness = 0, tissue_wall_stiffness = 0;
-  double contact_modulus = 0, tie_stiffness = 0;
+  double tie_stiffness = 0;
+  contact::Law law = contact::Law::barrier;
+  contact::CandidateParameters candidates;
+  double thickness_fraction = 1;  ///< of the device's tissue in contact, as it was crimped
   double penetration_tolerance = 0.2, apposition_gap = 0.5;
   double wall_thickness = 1;
   Tissue device, native;

@@ -21,9 +21,9 @@ double fade(double time, double from, double to) {
   return 1 - smooth((time - from) / (to - from));
 }
 
-std::vector<double> half_thickness(const structure::Shell& shell) {
+std::vector<double> half_thickness(const structure::Shell& shell, double fraction) {
   std::vector<double> radius = shell.mesh().thickness_mm;
-  for (double& r : radius) r *= 0.5;
+  for (double& r : radius) r *= 0.5 * fraction;
   return radius;
 }
 
@@ -118,28 +118,25 @@ void Simulation::add_contact(const Inputs& in, const Parameters& p, bool device)
   }
   if (in.native) set_rest(in.native->name, in.native->mounted);
   contact::CollisionMesh mesh(rest);
+  law_ = p.law;
   if (device) {
     const Body& struts = system_->body("frame");
     mesh.add_beams({"frame", 0}, struts.offset, in.frame.network->mesh().elements,
                    strut_radius(*in.frame.network));
-    for (std::size_t i = 0; i < in.tissue.size(); ++i) {
-      const ShellBody& tissue = in.tissue[i];
+    for (const ShellBody& tissue : in.tissue) {
       const Body& body = system_->body(tissue.name);
       mesh.add_shell({tissue.name, 0}, body.offset, tissue.shell->mesh().triangles,
-                     half_thickness(*tissue.shell));
-      for (const auto& [t, f] : in.ties[i]) mesh.identify(body.offset + t, struts.offset + f);
+                     half_thickness(*tissue.shell, p.thickness_fraction));
     }
   }
   if (in.native)
     mesh.add_shell({in.native->name, 1}, system_->body(in.native->name).offset,
-                   in.native->shell->mesh().triangles, half_thickness(*in.native->shell));
-  contact::CandidateParameters parameters;
-  parameters.modulus_Pa = p.contact_modulus;
-  contact::Candidates candidates(std::move(mesh), parameters);
+                   in.native->shell->mesh().triangles, half_thickness(*in.native->shell, 1));
+  contact::Candidates candidates(std::move(mesh), p.candidates);
   // Struts move apart from each other, and the device's leaflets lie inside frame and skirt.
   if (device) candidates.set_pair("frame", "frame", {false});
   if (device && in.native && has("leaflets")) candidates.set_pair("leaflets", in.native->name, {false});
-  contact_ = std::make_shared<contact::BodyContact>(std::move(candidates), contact::Law::barrier);
+  contact_ = std::make_shared<contact::BodyContact>(std::move(candidates), p.law);
   terms_.push_back(contact_);
 }
 
@@ -277,7 +274,7 @@ Points Simulation::native_on_device() const {
   for (const auto& one : bodies)
     for (const auto& other : bodies)
       if (one.group == other.group) pairs.set_pair(one.name, other.name, {false});
-  contact::BodyContact between(std::move(pairs), contact::Law::barrier);
+  contact::BodyContact between(std::move(pairs), law_);
   between.begin_step(system_->state, step_s_);
   between.add_forces(system_->state, forces);
   return forces.force;

@@ -76,6 +76,7 @@ class Simulation {
   std::unique_ptr<structure::Integrator> integrator_;
   std::function<double(double)> damping_;
   double step_s_ = 0;
+  contact::Law law_ = contact::Law::barrier;
 };
 
 }  // namespace valsalva::deploy
