@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/errors.hpp"
+
 namespace valsalva::fluid {
 
 namespace {
@@ -18,6 +20,13 @@ inline double flux(double c1, double c2, double s12, const double* q, std::ptrdi
 }
 
 }  // namespace
+
+Convection convection_from(const std::string& name) {
+  if (name == "upwind3") return Convection::upwind3;
+  if (name == "centred4") return Convection::centred4;
+  if (name == "centred2") return Convection::centred2;
+  throw InputError("convection '{}'; expected upwind3, centred4 or centred2", name);
+}
 
 Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection scheme,
                    double kinematic_viscosity)

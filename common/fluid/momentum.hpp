@@ -10,6 +10,7 @@
 // The advecting velocities are two-point means, so the scheme as a whole is second order.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "fluid/boundary.hpp"
@@ -18,6 +19,9 @@
 namespace valsalva::fluid {
 
 enum class Convection { upwind3, centred4, centred2 };
+
+/// InputError for an unknown name.
+Convection convection_from(const std::string& name);
 
 /// next = velocity + dt (weight_new N + weight_old rate) + dt/rho (force - grad pressure);  rate <- N.
 struct Advance {

@@ -14,6 +14,7 @@ void declare_all(Schema& schema) {
   declare_deploy(schema);
   declare_report(schema);
   declare_output(schema);
+  declare_fluid(schema);
 }
 
 }  // namespace valsalva

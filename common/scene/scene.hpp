@@ -19,5 +19,6 @@ void declare_crimp(Schema& schema);
 void declare_deploy(Schema& schema);
 void declare_report(Schema& schema);
 void declare_output(Schema& schema);
+void declare_fluid(Schema& schema);
 
 }  // namespace valsalva
