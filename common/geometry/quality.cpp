@@ -1,5 +1,6 @@
 #include "geometry/quality.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

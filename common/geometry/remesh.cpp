@@ -2,6 +2,8 @@
 
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <numbers>
 

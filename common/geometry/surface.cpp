@@ -1,5 +1,6 @@
 #include "geometry/surface.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

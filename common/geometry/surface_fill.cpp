@@ -1,5 +1,6 @@
 #include "geometry/surface_fill.hpp"
 
+#include <Eigen/Geometry>
 #include <limits>
 
 namespace valsalva::geometry {

@@ -1,0 +1,139 @@
+#include "leaflet_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/errors.hpp"
+
+namespace valsalva::mesher {
+namespace {
+
+constexpr double crown_width_power = 2.5;
+constexpr double crown_height_power = 2.2;
+constexpr double inward_turn = 0.8;  ///< |u| beyond which the free edge follows the wall
+constexpr double wedge_deg = 14;     ///< angle between free edge and wall at a commissure
+constexpr double clearance_fraction =
+    0.12;                                  ///< largest distance to the wall where the edge follows it, of R_c
+constexpr double least_mid_radius = 0.15;  ///< of R_c
+constexpr double largest_mid_radius = 0.75;  ///< of R_c
+constexpr int edge_samples = 400;
+
+/// 0 at 0, 1 from 1 on; twice continuously differentiable.
+double smooth_step(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * x * (10 + x * (6 * x - 15));
+}
+
+}  // namespace
+
+double commissure_height(const LeafletProportions& p) {
+  return std::min(p.commissure_height_factor * p.annulus_diameter_mm, p.junction_z_mm);
+}
+
+double crown_height(double x) {
+  return 1 - std::pow(1 - std::pow(std::min(1.0, std::abs(x)), crown_width_power), 1 / crown_height_power);
+}
+
+LeafletShape::LeafletShape(const Root& root, const LeafletProportions& p, double from, double to)
+    : root_(root), inset_(p.attachment_inset_mm), middle_(0.5 * (from + to)) {
+  const double d = p.annulus_diameter_mm;
+  const double height = commissure_height(p);
+  sizes_.commissure_z_mm = height;
+  commissure_radius_ = 0.5 * (root.wall_radius(from, height) + root.wall_radius(to, height));
+  half_width_ = 0.5 * (to - from) - 0.5 * p.commissure_gap_mm / commissure_radius_;
+  nadir_radius_ = root.wall_radius(middle_, 0);
+
+  const double fall = p.free_edge_angle_deg * std::numbers::pi / 180;
+  const double coaptation = p.coaptation_height_factor * d;
+  const double edge_z = height - commissure_radius_ * std::tan(fall);
+  const double contact_z = std::max(0.0, edge_z - coaptation);
+  sizes_.peak_mm = p.free_edge_peak_factor * d;
+  sizes_.free_edge_mm = 2 * (1 + p.free_edge_excess) * commissure_radius_ / std::cos(fall);
+  sizes_.length_mm =
+      (1 + p.free_edge_excess) * (std::hypot(nadir_radius_, contact_z) + coaptation) + sizes_.peak_mm;
+  fit_mid_radius();
+}
+
+LeafletShape::Cylindrical LeafletShape::attachment_at(double u) const {
+  const double z = sizes_.commissure_z_mm * crown_height(u);
+  return {root_.wall_radius(angle(u), z) + inset_, z};
+}
+
+LeafletShape::Cylindrical LeafletShape::free_edge_at(double u) const {
+  const double height = sizes_.commissure_z_mm;
+  const double reach = nadir_radius_ - mid_radius_;
+  const double plain_length = sizes_.length_mm - sizes_.peak_mm;
+  const double full_z = std::sqrt(std::max(0.0, sizes_.length_mm * sizes_.length_mm - reach * reach));
+  const double plain_z = std::sqrt(std::max(0.0, plain_length * plain_length - reach * reach));
+  const double w = 1 - u * u;
+  const double z = height + (plain_z - height) * w + (full_z - plain_z) * w * w * w * w;
+
+  const double from_commissure = (1 - std::abs(u)) * half_width_ * commissure_radius_;
+  const double clearance = std::min(clearance_fraction * commissure_radius_,
+                                    from_commissure * std::tan(wedge_deg * std::numbers::pi / 180));
+  const double follow =
+      root_.wall_radius(angle(u), z) - clearance + inset_ * std::max(0.0, 1 - from_commissure);
+  return {mid_radius_ + (follow - mid_radius_) * smooth_step(std::abs(u) / inward_turn), z};
+}
+
+Vec3 LeafletShape::attachment(double u) const {
+  const auto [radius, z] = attachment_at(u);
+  return root_.position(angle(u), radius, z);
+}
+
+Vec3 LeafletShape::free_edge(double u) const {
+  if (std::abs(u) >= 1) return attachment(u);
+  const auto [radius, z] = free_edge_at(u);
+  return root_.position(angle(u), radius, z);
+}
+
+double LeafletShape::free_edge_length() const {
+  double sum = 0;
+  Vec3 previous = free_edge(-1);
+  for (int i = 1; i <= edge_samples; ++i) {
+    const Vec3 next = free_edge(-1 + 2.0 * i / edge_samples);
+    sum += (next - previous).norm();
+    previous = next;
+  }
+  return sum;
+}
+
+/// The edge grows as its middle moves towards the axis.
+void LeafletShape::fit_mid_radius() {
+  double low = least_mid_radius * commissure_radius_;
+  double high = std::min(largest_mid_radius * commissure_radius_, 0.95 * nadir_radius_);
+  for (int i = 0; i < 40; ++i) {
+    mid_radius_ = 0.5 * (low + high);
+    (free_edge_length() > sizes_.free_edge_mm ? low : high) = mid_radius_;
+  }
+}
+
+geometry::TriMesh LeafletShape::sampled(int across, int along) const {
+  geometry::TriMesh mesh;
+  // Commissures are single points; the columns between them run from attachment to free edge.
+  mesh.points = {attachment(-1), attachment(1)};
+  const auto node = [&](int i, int j) {
+    if (i == 0) return 0;
+    if (i == across) return 1;
+    return 2 + (i - 1) * (along + 1) + j;
+  };
+  for (int i = 1; i < across; ++i) {
+    const double u = -std::cos(std::numbers::pi * i / across);
+    const Vec3 low = attachment(u), high = free_edge(u);
+    for (int j = 0; j <= along; ++j) mesh.points.push_back(low + (high - low) * j / along);
+  }
+  for (int i = 0; i < across; ++i)
+    for (int j = 0; j < along; ++j) {
+      const int a = node(i, j), b = node(i + 1, j), c = node(i + 1, j + 1), e = node(i, j + 1);
+      if (a != e && b != c) {
+        mesh.triangles.push_back({a, b, c});
+        mesh.triangles.push_back({a, c, e});
+      } else {
+        mesh.triangles.push_back(a == e ? Triangle{a, b, c} : Triangle{a, b, e});
+      }
+    }
+  return mesh;
+}
+
+}  // namespace valsalva::mesher

@@ -1,0 +1,91 @@
+// Native leaflets: how large they are, and their stress-free shape in a measured root.
+//
+// Sizes, from the closed valve (d annulus diameter, R_n wall radius at the nadirs, R_c at the commissures, H
+// height of the commissures, phi fall of the free edge, c coaptation height, e excess):
+//   z_f = H - R_c tan(phi)            height of the closed free edge at the axis        (Thubrikar 1990)
+//   z_b = z_f - c                     where coaptation begins
+//   free edge      = 2 (1 + e) R_c / cos(phi)                                 about 1.24 d
+//   leaflet length = (1 + e) (sqrt(R_n^2 + z_b^2) + c) + peak                 about 0.70 d (Swanson and Clark
+//   1974)
+// With R_n = R_c = d/2, H = 0.71 d, c = 0.17 d, phi = 34 deg, e = 0.03 they reproduce both published figures.
+//
+// Attachment: a crown on the wall,
+//   h(x) = 1 - (1 - |x|^2.5)^(1/2.2),  x in [-1, 1] from commissure to commissure, h from nadir 0 to
+//   commissure 1
+// (our fit to the line of Khelil et al. 2015, largest deviation 0.03 in h).
+//
+// Stress-free shape: half open and ruled. In each half-plane through the axis a straight line runs from the
+// attachment to the free edge, so leaflets keep to their own sectors and cannot cross. Seen along the axis
+// the free edge follows the wall near the commissures and turns inwards to a radius at mid leaflet, which is
+// chosen so that the edge has its length. Assumed: the course of the free edge between these constraints.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/mesh.hpp"
+#include "root.hpp"
+
+namespace valsalva::mesher {
+
+struct LeafletProportions {
+  double annulus_diameter_mm = 0;
+  double junction_z_mm = 0;  ///< height of the sinotubular junction
+  double commissure_height_factor = 0.71;
+  double free_edge_angle_deg = 34;
+  double coaptation_height_factor = 0.17;
+  double free_edge_excess = 0.03;
+  double free_edge_peak_factor = 0.05;
+  double commissure_gap_mm = 0.8;
+  double attachment_inset_mm = 0.1;
+};
+
+struct LeafletSizes {
+  double nadir_z_mm = 0;
+  double commissure_z_mm = 0;
+  double free_edge_mm = 0;
+  double length_mm = 0;  ///< nadir to mid free edge
+  double peak_mm = 0;
+};
+
+/// H = min(commissure_height_factor d, height of the junction).
+double commissure_height(const LeafletProportions& proportions);
+
+/// Attachment height at x in [-1, 1], from 0 to 1.
+double crown_height(double x);
+
+/// One leaflet between two commissures, as a map from (u, t): u in [-1, 1] from commissure to commissure in
+/// growing angle, t in [0, 1] from attachment to free edge.
+class LeafletShape {
+ public:
+  LeafletShape(const Root& root, const LeafletProportions& proportions, double from_rad, double to_rad);
+
+  Vec3 attachment(double u) const;
+  Vec3 free_edge(double u) const;
+  Vec3 point(double u, double t) const { return (1 - t) * attachment(u) + t * free_edge(u); }
+
+  const LeafletSizes& sizes() const { return sizes_; }
+  /// Radius of the free edge at mid leaflet.
+  double mid_radius_mm() const { return mid_radius_; }
+  /// Dense triangles of the surface, normal towards the aorta: `across` columns, `along` rows.
+  geometry::TriMesh sampled(int across, int along) const;
+
+ private:
+  struct Cylindrical {
+    double radius, z;
+  };
+  Cylindrical attachment_at(double u) const;
+  Cylindrical free_edge_at(double u) const;
+  double angle(double u) const { return middle_ + u * half_width_; }
+  double free_edge_length() const;
+  void fit_mid_radius();
+
+  const Root& root_;
+  LeafletSizes sizes_;
+  double inset_;
+  double middle_ = 0, half_width_ = 0;
+  double nadir_radius_ = 0, commissure_radius_ = 0;
+  double mid_radius_ = 0;
+};
+
+}  // namespace valsalva::mesher
