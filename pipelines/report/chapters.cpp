@@ -19,16 +19,20 @@ std::string section(const std::string& id, const std::string& title, const std::
   return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, escape(title), body);
 }
 
-/// Pictures of a stage; a state that cannot be drawn becomes a sentence, not a failed report.
+/// Pictures of a stage, those without a colour bar apart from those with one; a state that cannot be drawn
+/// becomes a sentence, not a failed report.
 template <class Maker>
-std::string gallery(Maker&& make) {
-  std::string out;
+std::string gallery(const std::string& css_class, Maker&& make) {
+  std::string plain, coloured;
   try {
-    for (const Picture& picture : make()) out += figure(picture);
+    for (const Picture& picture : make()) (picture.has_bar ? coloured : plain) += figure(picture);
   } catch (const Error& error) {
     return paragraph(std::string("No pictures: ") + error.what(), "problem");
   }
-  return out.empty() ? "" : "<div class=\"pictures\">" + out + "</div>\n";
+  std::string out;
+  for (const std::string& group : {plain, coloured})
+    if (!group.empty()) out += "<div class=\"" + css_class + "\">" + group + "</div>\n";
+  return out;
 }
 
 /// What is missing or went wrong in this stage, in words.
@@ -128,19 +132,8 @@ std::string tile(const std::string& words, double value, const std::string& unit
 }  // namespace
 
 std::string overview_tiles(const RunData& run) {
-  static const std::vector<std::pair<const char*, const char*>> shown{
-      {"cycle", "mean_gradient_mmHg"},
-      {"cycle", "peak_gradient_mmHg"},
-      {"cycle", "eoa_cm2"},
-      {"cycle", "stroke_volume_mL"},
-      {"cycle", "regurgitant_volume_mL"},
-      {"cycle", "paravalvular_leak_mL"},
-      {"deploy", "implant_depth_mm"},
-      {"deploy", "expanded_diameter_annulus_mm"},
-      {"crimp", "crimped_diameter_mm"},
-      {"segment", "annulus_diameter_mm"}};
   std::string out;
-  for (const auto& [stage, key] : shown)
+  for (const auto& [stage, key] : leading_metrics)
     if (const auto value = run.stage(stage).metric(key)) {
       const Quantity q = quantity(key);
       out += tile(q.words, *value, q.unit);
@@ -166,7 +159,7 @@ std::string anatomy_chapter(const RunData& run, const PageOptions& options) {
     contours.caption = "Contours of the segmented lumen over slices of the image";
     body += "<div class=\"wide\">" + figure(contours) + "</div>\n";
   }
-  body += gallery([&] { return anatomy_pictures(run, options.picture_width); });
+  body += gallery("pictures", [&] { return anatomy_pictures(run, options.picture_width); });
   body += notes(stage) + metric_table(stage);
   return section("anatomy", "1. Anatomy from the image", body);
 }
@@ -174,14 +167,14 @@ std::string anatomy_chapter(const RunData& run, const PageOptions& options) {
 std::string mesh_chapter(const RunData& run, const PageOptions& options) {
   const StageData& stage = run.stage("mesher");
   std::string body = remarks(stage);
-  body += gallery([&] { return mesh_pictures(run, options.picture_width); });
+  body += gallery("pictures", [&] { return mesh_pictures(run, options.picture_width); });
   return section("mesh", "2. Meshes and native leaflets", body + notes(stage) + metric_table(stage));
 }
 
 std::string device_chapter(const RunData& run, const PageOptions& options) {
   const StageData &stent = run.stage("stent"), &crimp = run.stage("crimp");
   std::string body = remarks(stent) + remarks(crimp);
-  body += gallery([&] { return device_pictures(run, options.picture_width); });
+  body += gallery("pictures small", [&] { return device_pictures(run, options.picture_width); });
   body += force_curve(crimp);
   body += notes(stent) + notes(crimp) + history_charts(crimp) + metric_table(stent) + metric_table(crimp);
   return section("device", "3. The device, expanded and crimped", body);
@@ -190,7 +183,7 @@ std::string device_chapter(const RunData& run, const PageOptions& options) {
 std::string deployment_chapter(const RunData& run, const PageOptions& options) {
   const StageData& stage = run.stage("deploy");
   std::string body = remarks(stage);
-  body += gallery([&] { return deployed_pictures(run, options.picture_width); });
+  body += gallery("pictures", [&] { return deployed_pictures(run, options.picture_width); });
   return section("deployment", "4. Deployment",
                  body + notes(stage) + history_charts(stage) + metric_table(stage));
 }
@@ -198,7 +191,7 @@ std::string deployment_chapter(const RunData& run, const PageOptions& options) {
 std::string beat_chapter(const RunData& run, const PageOptions& options) {
   const StageData& stage = run.stage("cycle");
   std::string body = remarks(stage);
-  body += gallery([&] { return beat_pictures(run, options.picture_width); });
+  body += gallery("pictures", [&] { return beat_pictures(run, options.picture_width); });
   if (stage.history) {
     const std::string charts =
         all_charts(charts_by_unit(*stage.history, time_column(*stage.history), {"step"}));

@@ -2,11 +2,26 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "page.hpp"
 #include "run_data.hpp"
 
 namespace valsalva::report {
+
+/// Stage and metric of what a reader looks for first.
+inline const std::vector<std::pair<std::string, std::string>> leading_metrics{
+    {"cycle", "mean_gradient_mmHg"},
+    {"cycle", "peak_gradient_mmHg"},
+    {"cycle", "eoa_cm2"},
+    {"cycle", "stroke_volume_mL"},
+    {"cycle", "regurgitant_volume_mL"},
+    {"cycle", "paravalvular_leak_mL"},
+    {"deploy", "implant_depth_mm"},
+    {"deploy", "expanded_diameter_annulus_mm"},
+    {"crimp", "crimped_diameter_mm"},
+    {"segment", "annulus_diameter_mm"}};
 
 std::string overview_tiles(const RunData& run);
 std::string chain_list(const RunData& run);

@@ -2,7 +2,8 @@
 //
 // The first column names the case. A column `status` marks cases that are not `ok`. A column `report` gives
 // the path of a case's report, relative to the table's folder; without it, ../<case>/report.html is linked
-// where it exists. Every other column is shown as it stands, with its unit.
+// where it exists. Metrics are columns named `stage.metric`, or `metric`. The first table shows what is not a
+// metric and the leading metrics; a fold-out has them all.
 #pragma once
 
 #include <filesystem>
