@@ -1,6 +1,7 @@
 // A straight tube with three flaps that bend inwards: the smallest anatomy that deploy can work on.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "geometry/grid_sdf.hpp"

@@ -1,6 +1,8 @@
 // Corotational beams against published and closed-form large-rotation results.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "statics.hpp"
 #include "structure/beam.hpp"
 
