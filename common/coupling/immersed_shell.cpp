@@ -24,7 +24,7 @@ ImmersedShell::ImmersedShell(MPI_Comm comm, structure::Shell shell, Points start
       part_{mpi::rank(comm), mpi::size(comm)},
       shell_(std::move(shell)),
       tangent_(shell_, part_),
-      repulsion_(repulsion, std::move(group), shell_.lumped_area()),
+      repulsion_(repulsion, start, std::move(group), shell_.lumped_area()),
       x_(std::move(start)),
       clamped_(std::move(clamped)) {
   VALSALVA_ASSERT(x_.size() == static_cast<std::size_t>(shell_.nodes()) && clamped_.size() == x_.size());
@@ -47,6 +47,12 @@ void ImmersedShell::forces(Points& out) {
     if (clamped_[a]) out[a].setZero();
 }
 
+void ImmersedShell::update_tangent() {
+  tangent_.update(x_);
+  Points ignored(x_.size(), Vec3::Zero());
+  repulsion_.add_forces(x_, ignored);
+}
+
 void ImmersedShell::tangent_product(const Points& direction, Points& out) const {
   free_direction_ = direction;
   for (std::size_t a = 0; a < x_.size(); ++a)
@@ -54,6 +60,7 @@ void ImmersedShell::tangent_product(const Points& direction, Points& out) const 
   out.assign(x_.size(), Vec3::Zero());
   tangent_.apply(free_direction_, out);
   sum_over_ranks(comm_, part_.count, out);
+  repulsion_.add_tangent_product(free_direction_, out);
   for (std::size_t a = 0; a < x_.size(); ++a)
     if (clamped_[a]) out[a].setZero();
 }

@@ -32,7 +32,7 @@ class ImmersedShell {
   double nearest() const { return repulsion_.nearest(); }
 
   /// The tangent (positive semi-definite) at the present shape; then out = K direction (collective).
-  void update_tangent() { tangent_.update(x_); }
+  void update_tangent();
   void tangent_product(const Points& direction, Points& out) const;
 
   /// x += dt u for free nodes. NumericalFailure when a node is not finite or faster than 2e4 mm/s.

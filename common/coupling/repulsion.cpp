@@ -7,12 +7,14 @@
 
 namespace valsalva::coupling {
 
-Repulsion::Repulsion(const RepulsionParameters& parameters, std::vector<int> group, std::vector<double> area)
+Repulsion::Repulsion(const RepulsionParameters& parameters, Points start, std::vector<int> group,
+                     std::vector<double> area)
     : parameters_(parameters),
+      start_x_(std::move(start)),
       group_(std::move(group)),
       area_(std::move(area)),
       nearest_(parameters.range_mm) {
-  VALSALVA_ASSERT(group_.size() == area_.size());
+  VALSALVA_ASSERT(group_.size() == area_.size() && start_x_.size() == area_.size());
   if (!(parameters.range_mm > 0) || !(parameters.pressure_Pa >= 0))
     throw InputError("coupling: repulsion of {} Pa over {} mm; expected a pressure >= 0 and a range > 0",
                      parameters.pressure_Pa, parameters.range_mm);
@@ -22,6 +24,7 @@ double Repulsion::add_forces(const Points& x, Points& force) {
   VALSALVA_ASSERT(x.size() == group_.size() && force.size() == x.size());
   const double range = parameters_.range_mm;
   nearest_ = range;
+  pairs_.clear();
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   for (std::size_t a = 0; a < x.size(); ++a) {
     if (group_[a] < 0) continue;
@@ -69,17 +72,28 @@ double Repulsion::add_forces(const Points& x, Points& force) {
           const Vec3 apart = x[a] - x[b];
           const double square = apart.squaredNorm();
           if (square >= range * range || square == 0) continue;
-          const double d = std::sqrt(square), closeness = 1 - d / range;
+          const double d = std::sqrt(square), reach = std::min(range, (start_x_[a] - start_x_[b]).norm());
+          if (d >= reach) continue;
+          const double closeness = 1 - d / reach;
           const double strength = parameters_.pressure_Pa * std::sqrt(area_[a] * area_[b]);
-          const Vec3 push = strength * closeness / d * apart;
+          const Vec3 direction = apart / d, push = strength * closeness * direction;
+          pairs_.push_back({static_cast<int>(a), static_cast<int>(b), strength / reach, direction});
           force[a] += push;
           force[b] -= push;
-          energy += 0.5 * strength * range * closeness * closeness;
+          energy += 0.5 * strength * reach * closeness * closeness;
           nearest_ = std::min(nearest_, d);
         }
       }
   }
   return energy;
+}
+
+void Repulsion::add_tangent_product(const Points& y, Points& out) const {
+  for (const Pair& pair : pairs_) {
+    const Vec3 change = pair.stiffness * pair.direction.dot(y[pair.a] - y[pair.b]) * pair.direction;
+    out[pair.a] += change;
+    out[pair.b] -= change;
+  }
 }
 
 }  // namespace valsalva::coupling

@@ -4,8 +4,9 @@
 //
 //   F_a = p (1 - d/r) sqrt(A_a A_b) (x_a - x_b)/d     for d = |x_a - x_b| < r,  and -F_a on b
 //
-// p: pressure at touch, Pa; A: lumped areas, mm2; r: range, mm. Pairs are found by a cell list and summed in
-// a fixed order.
+// p: pressure at touch, Pa; A: lumped areas, mm2; r: range, mm, or the pair's distance at the start where
+// that is less, so that neighbours at a commissure do not push at the start. Pairs are found by a cell list
+// and summed in a fixed order.
 #pragma once
 
 #include <vector>
@@ -22,18 +23,28 @@ struct RepulsionParameters {
 class Repulsion {
  public:
   /// group: nodes of the same group do not see each other; negative: the node takes no part.
-  Repulsion(const RepulsionParameters& parameters, std::vector<int> group, std::vector<double> area);
+  Repulsion(const RepulsionParameters& parameters, Points start, std::vector<int> group,
+            std::vector<double> area);
   /// force += F; returns the energy, nJ.
   double add_forces(const Points& x, Points& force);
+  /// out += K y, the tangent at the last add_forces without its negative part across the pair's direction.
+  void add_tangent_product(const Points& y, Points& out) const;
   /// The smallest distance between nodes of different groups met by the last call; the range when none is
   /// nearer.
   double nearest() const { return nearest_; }
 
  private:
+  struct Pair {
+    int a, b;
+    double stiffness;  // uN/mm
+    Vec3 direction;
+  };
   RepulsionParameters parameters_;
+  Points start_x_;
   std::vector<int> group_;
   std::vector<double> area_;
   std::vector<int> order_, start_;  // nodes sorted by cell
+  std::vector<Pair> pairs_;
   double nearest_;
 };
 

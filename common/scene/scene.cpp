@@ -15,6 +15,8 @@ void declare_all(Schema& schema) {
   declare_report(schema);
   declare_output(schema);
   declare_fluid(schema);
+  declare_circulation(schema);
+  declare_cycle(schema);
 }
 
 }  // namespace valsalva

@@ -20,5 +20,7 @@ void declare_deploy(Schema& schema);
 void declare_report(Schema& schema);
 void declare_output(Schema& schema);
 void declare_fluid(Schema& schema);
+void declare_circulation(Schema& schema);
+void declare_cycle(Schema& schema);
 
 }  // namespace valsalva

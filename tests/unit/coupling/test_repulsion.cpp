@@ -10,7 +10,7 @@ using namespace valsalva;
 using namespace valsalva::coupling;
 
 struct Cloud {
-  Points x;
+  Points x, start;  // far apart at the start
   std::vector<int> group;
   std::vector<double> area;
 };
@@ -21,6 +21,7 @@ Cloud cloud() {
   Cloud c;
   for (int a = 0; a < 150; ++a) {
     c.x.emplace_back(unit(random), unit(random), unit(random));
+    c.start.emplace_back(a, 0, 0);
     c.group.push_back(a % 4 - 1);
     c.area.push_back(0.1 + 0.05 * unit(random));
   }
@@ -29,7 +30,7 @@ Cloud cloud() {
 
 TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
   const Cloud c = cloud();
-  Repulsion repulsion({2e4, 0.7}, c.group, c.area);
+  Repulsion repulsion({2e4, 0.7}, c.start, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_GT(repulsion.add_forces(c.x, force), 0);
   Vec3 total = Vec3::Zero();
@@ -47,9 +48,41 @@ TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
     }
 }
 
+TEST(Repulsion, TangentIsSymmetricAndBoundsTheSlopeAlongEachPair) {
+  const Cloud c = cloud();
+  Repulsion repulsion({2e4, 0.7}, c.start, c.group, c.area);
+  Points ignored(c.x.size(), Vec3::Zero()), y(c.x.size()), z(c.x.size());
+  repulsion.add_forces(c.x, ignored);
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal;
+  for (std::size_t a = 0; a < y.size(); ++a) {
+    y[a] = Vec3(normal(random), normal(random), normal(random));
+    z[a] = Vec3(normal(random), normal(random), normal(random));
+  }
+  Points ky(y.size(), Vec3::Zero()), kz = ky;
+  repulsion.add_tangent_product(y, ky);
+  repulsion.add_tangent_product(z, kz);
+  double yz = 0, zy = 0, yy = 0, slope = 0;
+  const double e = 1e-6;
+  Points plus = c.x, minus = c.x, up = ignored, down = ignored;
+  for (std::size_t a = 0; a < y.size(); ++a) {
+    yz += z[a].dot(ky[a]);
+    zy += y[a].dot(kz[a]);
+    yy += y[a].dot(ky[a]);
+    plus[a] += e * y[a];
+    minus[a] -= e * y[a];
+  }
+  repulsion.add_forces(plus, up);
+  repulsion.add_forces(minus, down);
+  for (std::size_t a = 0; a < y.size(); ++a) slope -= y[a].dot(up[a] - down[a]) / (2 * e);
+  EXPECT_NEAR(yz, zy, 1e-9 * std::abs(yz));
+  EXPECT_GT(yy, 0);
+  EXPECT_GE(yy, slope);
+}
+
 TEST(Repulsion, FindsEveryPair) {
   const Cloud c = cloud();
-  Repulsion repulsion({1e4, 0.5}, c.group, c.area);
+  Repulsion repulsion({1e4, 0.5}, c.start, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero()), expected = force;
   repulsion.add_forces(c.x, force);
   double nearest = 0.5;
@@ -67,10 +100,17 @@ TEST(Repulsion, FindsEveryPair) {
 
 TEST(Repulsion, LeavesOneLeafletAlone) {
   const Cloud c = cloud();
-  Repulsion repulsion({1e4, 0.5}, std::vector<int>(c.x.size(), 0), c.area);
+  Repulsion repulsion({1e4, 0.5}, c.start, std::vector<int>(c.x.size(), 0), c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
   EXPECT_EQ(repulsion.nearest(), 0.5);
+}
+
+TEST(Repulsion, NeighboursAtTheStartDoNotPush) {
+  const Cloud c = cloud();
+  Repulsion repulsion({1e4, 0.5}, c.x, c.group, c.area);
+  Points force(c.x.size(), Vec3::Zero());
+  EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
 }
 
 }  // namespace

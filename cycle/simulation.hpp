@@ -1,0 +1,63 @@
+// The running cycle: fluid, leaflets, circulation and recorder, advanced step by step, with the rescue from
+// alarms: every 200 steps a copy of everything is kept in memory; after an alarm (a node or the fluid too
+// fast, a leaflet stretched too far, a value that is not finite) the run returns to it and goes on with
+// smaller steps; after too many returns it fails.
+#pragma once
+
+#include <memory>
+
+#include "inputs.hpp"
+#include "recorder.hpp"
+#include "terminals.hpp"
+
+namespace valsalva::cycle {
+
+class Simulation {
+ public:
+  Simulation(MPI_Comm comm, const Inputs& in, const Parameters& p);
+
+  double time_s() const { return time_s_; }
+  long steps() const { return steps_; }
+  bool finished() const { return time_s_ >= p_.end_s; }
+  /// NumericalFailure when the rescue is exhausted: the state is then the last good one.
+  void step();
+
+  const fluid::Flow& flow() const { return *flow_; }
+  const coupling::ImmersedShell* shell() const { return system_->shell(); }
+  const Recorder& recorder() const { return *recorder_; }
+  const Terminals& terminals() const { return *terminals_; }
+  const coupling::ImmersedStep& last_step() const { return last_; }
+  long returns() const { return returns_; }
+  /// Of the tissue law's exponential, over all elements now; zero without leaflets.
+  double largest_exponent() const { return shell() ? shell()->shell().max_exponent(shell()->x()) : 0; }
+
+  /// Restart entries, complete on rank 0 (collective); load continues bitwise at equal ranks.
+  std::map<std::string, state::Array> save() const;
+  void load(const state::State& state);
+
+ private:
+  struct Memory {
+    std::map<std::string, state::Array> arrays;  // complete on rank 0
+    std::vector<double> terminals;
+    Recorder::Mark mark;
+    double time_s = 0;
+    long steps = 0;
+  };
+  void remember();
+  void go_back(const std::string& why);
+  void advance();
+
+  MPI_Comm comm_;
+  const Inputs& in_;
+  const Parameters& p_;
+  std::unique_ptr<fluid::Flow> flow_;
+  std::unique_ptr<coupling::ImmersedFlow> system_;
+  std::unique_ptr<Terminals> terminals_;
+  std::unique_ptr<Recorder> recorder_;
+  Memory memory_;
+  coupling::ImmersedStep last_;
+  double time_s_ = 0;
+  long steps_ = 0, returns_ = 0, recent_returns_ = 0;
+};
+
+}  // namespace valsalva::cycle

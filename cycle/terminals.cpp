@@ -1,0 +1,100 @@
+#include "terminals.hpp"
+
+#include <algorithm>
+
+#include "core/errors.hpp"
+#include "core/units.hpp"
+
+namespace valsalva::cycle {
+
+namespace {
+
+using namespace circulation;
+
+// An open valve of about 1.7 cm2: only the start of the beat depends on it.
+constexpr double ideal_valve_resistance = 0.02 * units::resistance_per_mmHg_s_per_mL;
+
+double smooth(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+}  // namespace
+
+Terminals::Terminals(const CirculationParameters& p, double initialisation_s, double inertance)
+    : parameters_(p), initialisation_s_(initialisation_s) {
+  const bool heart = p.upstream == Upstream::heart, windkessel = p.downstream == Downstream::windkessel;
+  double stored = p.aortic_Pa;
+  low_start_Pa_ = p.end_diastolic_Pa;
+  if (heart) {
+    double atrial = 1000.0 / p.heart.atrium.minimum,
+           ventricular = p.end_diastolic_Pa / p.heart.ventricle.minimum;
+    if (windkessel) {
+      expected_ = periodic_beat(p.heart, p.windkessel, {ideal_valve_resistance, inertance});
+      atrial = expected_->atrial_volume;
+      ventricular = expected_->ventricular_volume;
+      stored = expected_->stored_pressure;
+    }
+    auto left_heart = std::make_unique<LeftHeart>(p.heart, atrial, ventricular);
+    heart_ = left_heart.get();
+    low_start_Pa_ = heart_->ventricular_pressure();
+    low_ = std::move(left_heart);
+  } else if (p.upstream == Upstream::flow) {
+    low_ = std::make_unique<FlowSource>(*p.flow, inertance, p.end_diastolic_Pa);
+  } else {
+    low_ = std::make_unique<PressureSource>(*p.pressure);
+    low_start_Pa_ = p.pressure->at(0);
+  }
+  high_start_Pa_ = stored;
+  if (windkessel) {
+    high_ = std::make_unique<Windkessel>(p.windkessel, stored);
+  } else {
+    high_ = std::make_unique<Resistance>(p.downstream == Downstream::resistance ? p.outlet_resistance : 0.0,
+                                         p.aortic_Pa);
+    high_start_Pa_ = p.aortic_Pa;
+  }
+}
+
+void Terminals::advance(double time_s, double dt_s, double low_flow, double high_flow) {
+  if (time_s < initialisation_s_) {
+    const double share = smooth((time_s + dt_s) / initialisation_s_);
+    const double low_resistance = heart_ ? parameters_.heart.outflow_resistance : 0;
+    const double high_resistance =
+        parameters_.downstream == Downstream::windkessel   ? parameters_.windkessel.characteristic_resistance
+        : parameters_.downstream == Downstream::resistance ? parameters_.outlet_resistance
+                                                           : 0;
+    low_Pa_ = share * low_start_Pa_ - low_resistance * low_flow;
+    high_Pa_ = share * high_start_Pa_ + high_resistance * high_flow;
+    return;
+  }
+  const double beat_time = time_s - initialisation_s_;
+  low_->advance(beat_time, dt_s, -low_flow);
+  high_->advance(beat_time, dt_s, high_flow);
+  low_Pa_ = low_->pressure();
+  high_Pa_ = high_->pressure();
+}
+
+double Terminals::ventricular_pressure() const {
+  // Before the beat the heart stands still at its starting volume.
+  return heart_ ? heart_->ventricular_pressure() : low_Pa_;
+}
+
+std::vector<double> Terminals::save() const {
+  std::vector<double> saved{low_Pa_, high_Pa_};
+  for (const double v : low_->save()) saved.push_back(v);
+  for (const double v : high_->save()) saved.push_back(v);
+  return saved;
+}
+
+void Terminals::restore(const std::vector<double>& saved) {
+  const std::size_t low = low_->save().size(), high = high_->save().size();
+  if (saved.size() != 2 + low + high)
+    throw InputError("the state's circulation has {} numbers, this case's needs {}", saved.size(),
+                     2 + low + high);
+  low_Pa_ = saved[0];
+  high_Pa_ = saved[1];
+  low_->restore({saved.begin() + 2, saved.begin() + 2 + low});
+  high_->restore({saved.begin() + 2 + low, saved.end()});
+}
+
+}  // namespace valsalva::cycle
