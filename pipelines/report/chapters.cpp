@@ -46,6 +46,11 @@ std::string remarks(const StageData& stage) {
     out += paragraph(fmt::format("'{}' left no readable summary.json.", stage.name), "absent");
   if (!stage.state)
     out += paragraph(fmt::format("'{}' left no readable state: no pictures of it.", stage.name), "absent");
+  if (stage.state && !stage.state->final)
+    out +=
+        paragraph(fmt::format("The newest state of '{}' is not final: what is shown is a stage on its way.",
+                              stage.name),
+                  "problem");
   for (const std::string& problem : stage.problems) out += paragraph(problem, "problem");
   const std::string status = stage.status();
   if (stage.summary && status != "ok")

@@ -112,7 +112,7 @@ std::string number(double value, int digits) {
   const double size = std::abs(value);
   if (size >= 1e-3 && size < 1e6) {
     const int before = static_cast<int>(std::floor(std::log10(size))) + 1;
-    std::string text = fmt::format("{:.{}f}", value, std::max(0, digits - std::max(before, 1)));
+    std::string text = fmt::format("{:.{}f}", value, std::max(0, digits - before));
     if (text.find('.') != std::string::npos) {
       text.erase(text.find_last_not_of('0') + 1);
       if (text.back() == '.') text.pop_back();

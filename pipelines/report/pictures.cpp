@@ -148,6 +148,7 @@ std::vector<Picture> device_pictures(const RunData& run, int width) {
     const auto& state = run.stage(stage).state;
     if (!state || !state->has_mesh("frame")) continue;
     const bool crimped = stage == "crimp";
+    const std::string word = state->final ? "Crimped" : "On its way to the crimped shape";
     const std::vector<Body> bodies = bodies_of(*state);
     const Box box = box_of(bodies, {"frame", "leaflets", "skirt"});
     Camera camera = view(from_front, box, width * 2 / 3);
@@ -157,14 +158,15 @@ std::vector<Picture> device_pictures(const RunData& run, int width) {
       camera.height = static_cast<int>(1.08 * (box.high.z() - box.low.z()) / camera.mm_per_pixel) + 40;
     }
     scale = camera;
-    pictures.push_back(picture(surfaces_of(bodies), camera,
-                               crimped ? "Crimped device from the side" : "Expanded device from the side",
-                               crimped ? "Crimped, at the same scale" : "Expanded, free of loads"));
     pictures.push_back(
-        picture(surfaces_of(bodies), view(from_aorta, box, width * 2 / 3),
-                crimped ? "Crimped device seen along its axis from the aorta"
-                        : "Expanded device seen along its axis from the aorta",
-                crimped ? "Crimped, seen from the aorta (its own scale)" : "Expanded, seen from the aorta"));
+        picture(surfaces_of(bodies), camera,
+                crimped ? "Crimped device from the side" : "Expanded device from the side",
+                crimped ? word + ", at the same scale" : std::string("Expanded, free of loads")));
+    pictures.push_back(picture(surfaces_of(bodies), view(from_aorta, box, width * 2 / 3),
+                               crimped ? "Crimped device seen along its axis from the aorta"
+                                       : "Expanded device seen along its axis from the aorta",
+                               crimped ? word + ", seen from the aorta (its own scale)"
+                                       : std::string("Expanded, seen from the aorta")));
   }
   return pictures;
 }

@@ -1,6 +1,8 @@
 // The rasteriser: known triangles cover known pixels, in the right order.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "render/rasteriser.hpp"
 
 namespace valsalva::report {
