@@ -33,11 +33,18 @@ void run(StageContext& context) {
             1e3 * simulation.crimper().duration_s(), 1e6 * p.step_s);
   Progress progress("crimp", simulation.longest_s(), context.speaks);
   progress.start_at(simulation.system().state.time_s);
-  state::CheckpointClock clock;
+  state::CheckpointClock clock(context);
   const long first = integrator.steps();
   bool stopped = false;
   while (!simulation.done() && !stopped) {
-    simulation.step();
+    try {
+      simulation.step();
+    } catch (const NumericalFailure& failure) {
+      if (mpi::rank(context.comm) == 0) history.write(context.run.file("history.csv"));
+      const auto good = context.run.latest_state();
+      throw NumericalFailure("{}; the last good state is {}", failure.what(),
+                             good ? good->string() : "stent's, " + stent.source);
+    }
     if (integrator.steps() % p.history_interval == 0) record(history, simulation);
     if (clock.due(context.comm)) state::save(context, snapshot(context, stent, simulation, history));
     if (interrupted()) state::stop(context, snapshot(context, stent, simulation, history));

@@ -59,10 +59,12 @@ double tissue_section(const Simulation& s, double z) {
 
 double outer_diameter_mm(const Simulation& s, double thickness_fraction) {
   double radius = 0;
-  for (const auto& n : crimper_nodes(s.device(), s.system(), thickness_fraction)) {
-    const Vec3& x = s.system().state.x[n.node];
-    radius = std::max(radius, std::hypot(x[0], x[1]) + n.radius_mm);
-  }
+  for (const auto& nodes :
+       {frame_surface(s.device(), s.system()), tissue_surface(s.device(), s.system(), thickness_fraction)})
+    for (const auto& n : nodes) {
+      const Vec3& x = s.system().state.x[n.node];
+      radius = std::max(radius, std::hypot(x[0], x[1]) + n.radius_mm);
+    }
   return 2 * radius;
 }
 

@@ -94,7 +94,7 @@ void fill_summary(Summary& summary, const Simulation& s, const History& history,
     const auto force = history.column("radial_force_N");
     return force.empty() ? 0.0 : *std::max_element(force.begin(), force.end());
   }();
-  m["crimper_overlap_mm"] = s.tool().penetration_mm(s.system().state);
+  m["crimper_overlap_mm"] = s.crimper_overlap_mm();
   m["mass_ratio"] = s.integrator().mass_ratio();
   m["slowed_node_steps"] = static_cast<double>(s.slowed());
 

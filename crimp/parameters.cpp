@@ -21,7 +21,8 @@ Parameters read_parameters(const Case& scene) {
   p.scaling_interval = static_cast<int>(scene.integer("crimp.scaling_interval"));
   p.damping_per_s = scene.real("crimp.damping_per_s");
   p.settle_damping_per_s = scene.real("crimp.settle_damping_per_s");
-  p.crimper_Pa_per_mm = scene.real("crimp.crimper_stiffness_kPa_per_mm") * units::pa_per_kPa;
+  p.crimper_frame_Pa_per_mm = scene.real("crimp.crimper_stiffness_kPa_per_mm") * units::pa_per_kPa;
+  p.crimper_tissue_Pa_per_mm = scene.real("crimp.crimper_tissue_stiffness_kPa_per_mm") * units::pa_per_kPa;
   p.crimper_friction = scene.real("crimp.crimper_friction");
   p.tie_uN_per_mm = scene.real("crimp.tie_stiffness_N_per_mm") * units::uN_per_N;
   p.asymmetry_mm = scene.real("crimp.asymmetry_mm");

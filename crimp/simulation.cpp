@@ -9,6 +9,8 @@
 namespace valsalva::crimp {
 namespace {
 
+constexpr double far_mm = 1e4;  // the crimper is longer than any device
+
 double outer_radius_of_frame(const structure::BeamNetwork& frame) {
   double outer = 0;
   const auto& mesh = frame.mesh();
@@ -62,8 +64,7 @@ contact::CollisionMesh collision_mesh(const Device& device, const structure::Sys
   return mesh;
 }
 
-std::vector<contact::SurfaceNode> crimper_nodes(const Device& device, const structure::System& system,
-                                                double fraction) {
+std::vector<contact::SurfaceNode> frame_surface(const Device& device, const structure::System& system) {
   std::vector<contact::SurfaceNode> nodes;
   const auto& beams = device.frame->mesh();
   const int offset = system.body("frame").offset;
@@ -76,6 +77,12 @@ std::vector<contact::SurfaceNode> crimper_nodes(const Device& device, const stru
       nodes[n].area_mm2 += area;
     }
   }
+  return nodes;
+}
+
+std::vector<contact::SurfaceNode> tissue_surface(const Device& device, const structure::System& system,
+                                                 double fraction) {
+  std::vector<contact::SurfaceNode> nodes;
   for (const auto& body : device.tissue) {
     const auto radii = tissue_radii(*body.shell, fraction), areas = body.shell->lumped_area();
     for (int a = 0; a < body.shell->nodes(); ++a)
@@ -98,16 +105,20 @@ Simulation::Simulation(Device device, const Parameters& p)
   auto terms = elastic_terms(device_, p, system_);
   bodies_ = std::make_shared<contact::BodyContact>(
       contact::Candidates(collision_mesh(device_, system_, p.thickness_fraction), p.candidates), p.law);
-  constexpr double far_mm = 1e4;  // the crimper is longer than any device
-  tool_ = std::make_shared<contact::ToolContact>(
-      "crimper",
-      [this](double t) {
-        return contact::ToolPosition{crimper_.radius_mm(t), -far_mm, far_mm, 0};
-      },
-      1.0, crimper_nodes(device_, system_, p.thickness_fraction),
-      contact::SurfaceParameters{p.crimper_Pa_per_mm, p.crimper_friction, p.crimper_Pa_per_mm});
+  const auto motion = [this](double t) {
+    return contact::ToolPosition{crimper_.radius_mm(t), -far_mm, far_mm, 0};
+  };
+  constexpr double rim_mm = 1;  // far away, never met
+  const auto tool = [&](const std::string& name, std::vector<contact::SurfaceNode> nodes, double stiffness) {
+    tools_.push_back(std::make_shared<contact::ToolContact>(
+        name, motion, rim_mm, std::move(nodes),
+        contact::SurfaceParameters{stiffness, p.crimper_friction, stiffness}));
+  };
   terms.push_back(bodies_);
-  terms.push_back(tool_);
+  tool("crimper on frame", frame_surface(device_, system_), p.crimper_frame_Pa_per_mm);
+  tool("crimper on tissue", tissue_surface(device_, system_, p.thickness_fraction),
+       p.crimper_tissue_Pa_per_mm);
+  terms.insert(terms.end(), tools_.begin(), tools_.end());
   structure::IntegratorSettings settings;
   settings.step_s = p.step_s;
   settings.scaling_interval = p.scaling_interval;
@@ -121,6 +132,18 @@ void Simulation::step() {
   integrator_->step();
   slowed_ += bodies_->limit_velocities(system_, p_.step_s);
   work_ += force * (radius - crimper_radius_mm());
+}
+
+double Simulation::radial_force_uN() const {
+  double sum = 0;
+  for (const auto& tool : tools_) sum += tool->radial_force_uN(system_.state);
+  return sum;
+}
+
+double Simulation::crimper_overlap_mm() const {
+  double most = 0;
+  for (const auto& tool : tools_) most = std::max(most, tool->penetration_mm(system_.state));
+  return most;
 }
 
 bool Simulation::settled() const {

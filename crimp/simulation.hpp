@@ -15,8 +15,10 @@ namespace valsalva::crimp {
 /// Contact radii. Struts: half the smaller side against tissue and struts, half the depth against the crimper
 /// (a strut's outer face). Tissue: half of fraction times thickness.
 contact::CollisionMesh collision_mesh(const Device& device, const structure::System& system, double fraction);
-std::vector<contact::SurfaceNode> crimper_nodes(const Device& device, const structure::System& system,
-                                                double fraction);
+/// What meets the crimper: the outer faces of the struts, and tissue.
+std::vector<contact::SurfaceNode> frame_surface(const Device& device, const structure::System& system);
+std::vector<contact::SurfaceNode> tissue_surface(const Device& device, const structure::System& system,
+                                                 double fraction);
 
 class Simulation {
  public:
@@ -36,10 +38,11 @@ class Simulation {
   const structure::System& system() const { return system_; }
   const structure::Integrator& integrator() const { return *integrator_; }
   const contact::BodyContact& body_contact() const { return *bodies_; }
-  const contact::ToolContact& tool() const { return *tool_; }
   const Crimper& crimper() const { return crimper_; }
   double crimper_radius_mm() const { return crimper_.radius_mm(system_.state.time_s); }
-  double radial_force_uN() const { return tool_->radial_force_uN(system_.state); }
+  /// Sum of the crimper's normal forces on the device.
+  double radial_force_uN() const;
+  double crimper_overlap_mm() const;
   double crimper_work_nJ() const { return work_; }
   /// How often the step guard slowed a node.
   long slowed() const { return slowed_; }
@@ -53,7 +56,7 @@ class Simulation {
   structure::System system_;
   Crimper crimper_;
   std::shared_ptr<contact::BodyContact> bodies_;
-  std::shared_ptr<contact::ToolContact> tool_;
+  std::vector<std::shared_ptr<contact::ToolContact>> tools_;
   std::optional<structure::Integrator> integrator_;
   double work_ = 0;
   long slowed_ = 0;

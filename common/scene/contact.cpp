@@ -6,7 +6,7 @@ void declare_contact(Schema& schema) {
   schema.table("contact", "Contact between bodies while the device is crimped");
   schema.choice("contact.law", "barrier", {"barrier", "penalty"},
                 "Pressure over distance: a barrier grows without bound, a penalty is bounded (to compare)");
-  schema.real("contact.modulus_kPa", 200, positive(),
+  schema.real("contact.modulus_kPa", 1000, positive(),
               "Stiffness scale of the law; the barrier gives 1.2 times this at half the contact distance");
   schema.real(
       "contact.tissue_compressed_thickness_fraction", 0.4, {0.05, 1},

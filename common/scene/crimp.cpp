@@ -12,13 +12,16 @@ void declare_crimp(Schema& schema) {
   schema.real("crimp.settle_ms", 20, {0, 500}, "At most this long the device rests in the closed crimper");
   schema.real("crimp.settled_energy_ratio", 1e-4, positive(),
               "Rest is over when kinetic energy falls below this share of internal energy");
-  schema.real("crimp.step_us", {4, 3, 2, 1.5}, positive(), "Time step; masses are scaled to it");
-  schema.integer("crimp.scaling_interval", 10, {1, 1000}, "Steps between new mass scalings");
-  schema.real("crimp.damping_per_s", 300, not_negative(),
+  schema.real("crimp.step_us", {3, 2, 1.5, 1}, positive(), "Time step; masses are scaled to it");
+  schema.integer("crimp.scaling_interval", 5, {1, 1000}, "Steps between new mass scalings");
+  schema.real("crimp.damping_per_s", 100, not_negative(),
               "Mass-proportional damping while closing (assumed)");
   schema.real("crimp.settle_damping_per_s", 2000, not_negative(), "The same while resting (assumed)");
-  schema.real("crimp.crimper_stiffness_kPa_per_mm", 50000, positive(),
-              "Pressure of the crimper per overlap: sets the overlap, not the crimper's compliance");
+  schema.real(
+      "crimp.crimper_stiffness_kPa_per_mm", 50000, positive(),
+      "Pressure of the crimper per overlap on struts: sets the overlap, not the crimper's compliance");
+  schema.real("crimp.crimper_tissue_stiffness_kPa_per_mm", 3000, positive(),
+              "The same on tissue: light nodes chatter on a stiffer crimper");
   schema.real("crimp.crimper_friction", 0, {0, 2},
               "Coulomb friction between device and crimper; 0: the sleeve slides freely");
   schema.real("crimp.tie_stiffness_N_per_mm", 5, positive(), "Stiffness of a stitch");
