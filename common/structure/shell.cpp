@@ -336,7 +336,7 @@ void ShellTangent::update(const Points& x, int offset) {
     const double volume = element.thickness * element.area;
     ElementMatrix& k = element_[e - own_elements.begin];
     const Eigen::Matrix<double, 3, 9> stressed = volume * response.tangent * strain;
-    k.noalias() = strain.transpose() * stressed;
+    k.noalias() = strain.transpose().lazyProduct(stressed);
     const Eigen::Matrix3d pull = volume * shape * clipped * shape.transpose();
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) k.block<3, 3>(3 * a, 3 * b).diagonal().array() += pull(a, b);
