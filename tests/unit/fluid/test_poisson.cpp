@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <random>
 
 #include "fluid/flow.hpp"
@@ -15,6 +16,10 @@ struct Sides {
   const char* name;
   Side x, y, low, high;
 };
+
+void PrintTo(const Sides& sides, std::ostream* out) {
+  *out << sides.name;
+}
 
 class PoissonSides : public testing::TestWithParam<Sides> {};
 

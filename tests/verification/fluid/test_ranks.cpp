@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "fluid/flow.hpp"
 
@@ -20,6 +21,10 @@ struct Scene {
   Side x, y, low, high;
   bool tube;
 };
+
+void PrintTo(const Scene& scene, std::ostream* out) {
+  *out << scene.name;
+}
 
 std::unique_ptr<Flow> make(MPI_Comm comm, const Scene& scene) {
   Grid grid;
