@@ -21,6 +21,7 @@ Parameters read_parameters(const Case& scene) {
   p.scaling_interval = static_cast<int>(scene.integer("crimp.scaling_interval"));
   p.damping_per_s = scene.real("crimp.damping_per_s");
   p.settle_damping_per_s = scene.real("crimp.settle_damping_per_s");
+  p.tissue_damping_per_s = scene.real("crimp.tissue_damping_per_s");
   p.crimper_frame_Pa_per_mm = scene.real("crimp.crimper_stiffness_kPa_per_mm") * units::pa_per_kPa;
   p.crimper_tissue_Pa_per_mm = scene.real("crimp.crimper_tissue_stiffness_kPa_per_mm") * units::pa_per_kPa;
   p.crimper_friction = scene.real("crimp.crimper_friction");

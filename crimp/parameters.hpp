@@ -20,7 +20,7 @@ struct Parameters {
   double settle_s = 0, settled_ratio = 0;
   double step_s = 0;
   int scaling_interval = 1;
-  double damping_per_s = 0, settle_damping_per_s = 0;
+  double damping_per_s = 0, settle_damping_per_s = 0, tissue_damping_per_s = 0;
   double crimper_frame_Pa_per_mm = 0, crimper_tissue_Pa_per_mm = 0, crimper_friction = 0;
   double tie_uN_per_mm = 0;
   double asymmetry_mm = 0;

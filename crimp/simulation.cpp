@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/errors.hpp"
+#include "tissue_damping.hpp"
 
 namespace valsalva::crimp {
 namespace {
@@ -119,7 +120,13 @@ Simulation::Simulation(Device device, const Parameters& p)
   tool("crimper on tissue", tissue_surface(device_, system_, p.thickness_fraction),
        p.crimper_tissue_Pa_per_mm);
   terms.insert(terms.end(), tools_.begin(), tools_.end());
+  for (const auto& body : device_.tissue)
+    if (p.tissue_damping_per_s > 0)
+      terms.push_back(std::make_shared<TissueDamping>(
+          "damping of " + body.name, body.shell->mesh().triangles, body.shell->lumped_mass(p.tissue_density),
+          system_.body(body.name).offset, p.tissue_damping_per_s));
   structure::IntegratorSettings settings;
+  settings.safety = 0.6;  // the fibres' exponential stiffens between two mass scalings
   settings.step_s = p.step_s;
   settings.scaling_interval = p.scaling_interval;
   settings.damping_per_s = p.damping_per_s;

@@ -18,6 +18,9 @@ void declare_crimp(Schema& schema) {
               "Mass-proportional damping while closing (assumed)");
   schema.real("crimp.settle_damping_per_s", 2000, not_negative(), "The same while resting (assumed)");
   schema.real(
+      "crimp.tissue_damping_per_s", 10000, not_negative(),
+      "Rate of the dashpots along the edges of tissue triangles: takes out ringing between nodes (assumed)");
+  schema.real(
       "crimp.crimper_stiffness_kPa_per_mm", 50000, positive(),
       "Pressure of the crimper per overlap on struts: sets the overlap, not the crimper's compliance");
   schema.real("crimp.crimper_tissue_stiffness_kPa_per_mm", 3000, positive(),
