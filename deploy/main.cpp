@@ -3,8 +3,6 @@
 //
 //   valsalva-deploy CASE.toml
 //   valsalva-deploy CASE.toml --set deploy.depth_mm=4 --set deploy.release=sheath
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +14,7 @@
 #include "output.hpp"
 #include "scene/scene.hpp"
 #include "state/checkpoint.hpp"
+#include "structure/threads.hpp"
 
 namespace {
 
@@ -225,6 +224,7 @@ void check(const Case& scene) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  valsalva::structure::wait_passively(argv);
   return valsalva::stage_main(
       argc, argv,
       {"deploy",

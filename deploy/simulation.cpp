@@ -170,7 +170,7 @@ void Simulation::start(const Parameters& p, double damping) {
   structure::IntegratorSettings settings;
   settings.step_s = p.step_s;
   settings.damping_per_s = damping;
-  settings.scaling_interval = 1;
+  settings.scaling_interval = 1;  // contact forms and stiffens within a few steps
   step_s_ = p.step_s;
   integrator_ = std::make_unique<structure::Integrator>(*system_, terms_, settings);
 }

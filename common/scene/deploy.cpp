@@ -27,7 +27,7 @@ void declare_deploy(Schema& schema) {
               "Duration of settling; pressure and hold are taken away over its first half");
   schema.real("deploy.settle_damping_per_s", 300, not_negative(), "Mass-proportional damping while settling");
   schema.real(
-      "deploy.hold_stiffness_N_per_mm", 2, not_negative(),
+      "deploy.hold_stiffness_N_per_mm", 20, not_negative(),
       "The delivery system holds the mean height of the inflow with this stiffness until settling; 0: free");
   schema.real("deploy.step_us", {10, 6, 4, 3}, positive(), "Time step; masses are scaled to it");
 

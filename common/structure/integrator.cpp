@@ -16,14 +16,17 @@ std::vector<double> flat(const Points& points) {
   return values;
 }
 
+// What is empty is not stored.
 const std::vector<double>& entry(const Snapshot& snapshot, const std::string& name, std::size_t size) {
+  static const std::vector<double> empty;
   const auto it = snapshot.find(name);
-  if (it == snapshot.end() || it->second.size() != size)
+  const std::vector<double>& values = it == snapshot.end() ? empty : it->second;
+  if (values.size() != size)
     throw InputError(
         "restart of the structure: entry '{}' has {} values; expected {}: the state belongs to another "
         "scene; start the stage anew",
-        name, it == snapshot.end() ? 0 : it->second.size(), size);
-  return it->second;
+        name, values.size(), size);
+  return values;
 }
 
 void unflatten(const std::vector<double>& values, Points& points) {
