@@ -193,15 +193,36 @@ std::string deployment_chapter(const RunData& run, const PageOptions& options) {
                  body + notes(stage) + history_charts(stage) + metric_table(stage));
 }
 
+namespace {
+
+/// The waveforms a reader looks for, with the pressure difference over the valve; the rest in a fold-out.
+std::string waveforms(const Series& history) {
+  const std::string x = time_column(history);
+  Series series = history;
+  const auto *before = history.find("p_lvot_mmHg"), *after = history.find("p_ao_mmHg");
+  if (before && after) {
+    series.names.push_back("pressure_difference_lvot_to_ao_mmHg");
+    series.columns.push_back(*before);
+    for (std::size_t i = 0; i < before->size(); ++i) series.columns.back()[i] -= (*after)[i];
+  }
+  std::vector<Chart> first, rest;
+  for (Chart& chart : charts_by_unit(series, x, {"step", "beat"})) {
+    static const std::vector<std::string> units{"mmHg", "mL/s", "cm²", "cm/s", "µs"};
+    const bool leads = std::find(units.begin(), units.end(), chart.y_label) != units.end();
+    (leads ? first : rest).push_back(std::move(chart));
+  }
+  const std::string charts = all_charts(first), others = all_charts(rest);
+  return (charts.empty() ? "" : "<h3>Waveforms</h3>\n" + charts) +
+         (others.empty() ? "" : details("Further histories of the beat", others));
+}
+
+}  // namespace
+
 std::string beat_chapter(const RunData& run, const PageOptions& options) {
   const StageData& stage = run.stage("cycle");
   std::string body = remarks(stage);
   body += gallery("pictures", [&] { return beat_pictures(run, options.picture_width); });
-  if (stage.history) {
-    const std::string charts =
-        all_charts(charts_by_unit(*stage.history, time_column(*stage.history), {"step"}));
-    if (!charts.empty()) body += "<h3>Waveforms</h3>\n" + charts;
-  }
+  if (stage.history) body += waveforms(*stage.history);
   return section("beat", "5. The beating valve", body + notes(stage) + metric_table(stage));
 }
 

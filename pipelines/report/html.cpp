@@ -86,7 +86,10 @@ Quantity quantity(const std::string& key) {
                                                                       {"la", "LA"},
                                                                       {"ao", "aortic"},
                                                                       {"p99", "99th percentile"},
-                                                                      {"dt", "time step"}};
+                                                                      {"dt", "time step"},
+                                                                      {"p", "pressure"},
+                                                                      {"q", "flow"},
+                                                                      {"v", "volume"}};
   std::string sentence;
   std::size_t start = 0;
   while (start <= words.size()) {

@@ -54,15 +54,6 @@ std::vector<Surface> surfaces_of(const std::vector<Body>& bodies,
   return surfaces;
 }
 
-/// Bodies of a later stage, with the calcium that only segment's state holds.
-std::vector<Body> with_calcium(const RunData& run, std::vector<Body> bodies) {
-  const auto& segment = run.stage("segment").state;
-  if (!segment || find_body(bodies, "calcium")) return bodies;
-  for (Body& body : bodies_of(*segment))
-    if (body.id == "calcium") bodies.push_back(std::move(body));
-  return bodies;
-}
-
 /// The region around the valve: the box of `ids`, grown.
 Box around(const std::vector<Body>& bodies, const std::vector<std::string>& ids, double margin) {
   Box box = box_of(bodies, ids);
@@ -174,7 +165,7 @@ std::vector<Picture> device_pictures(const RunData& run, int width) {
 std::vector<Picture> deployed_pictures(const RunData& run, int width) {
   const auto& state = run.stage("deploy").state;
   if (!state) return {};
-  const std::vector<Body> bodies = with_calcium(run, bodies_of(*state));
+  const std::vector<Body> bodies = bodies_of(*state);
   Box box = around(bodies, {"frame", "native_leaflets"}, 4);
   std::vector<Picture> pictures;
   pictures.push_back(picture(surfaces_of(bodies), view(from_front, box, width),
@@ -301,9 +292,9 @@ std::vector<Picture> beat_pictures(const RunData& run, int width) {
   const auto when = [&](std::size_t frame) {
     return beat ? fmt::format(" at {:.3f} s", beat->time_s[frame]) : "";
   };
-  const std::vector<std::string> hidden =
-      valve == "leaflets" ? std::vector<std::string>{"lumen", "native_leaflets", "calcium"}
-                          : std::vector<std::string>{"lumen"};
+  const std::vector<std::string> hidden = valve == "leaflets"
+                                              ? std::vector<std::string>{"lumen", "native_leaflets"}
+                                              : std::vector<std::string>{"lumen"};
 
   struct Moment {
     std::size_t frame;

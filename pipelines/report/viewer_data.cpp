@@ -68,8 +68,8 @@ class Collector {
 
   /// Adds the bodies of one stage's state; those in `left_out` are skipped, those in `hidden` start
   /// invisible.
-  void scene(const std::string& name, const std::string& stage, const std::set<std::string>& left_out,
-             const std::set<std::string>& hidden, bool with_anatomy) {
+  void scene(const std::string& name, const std::string& stage, const std::set<std::string>& hidden,
+             const std::vector<std::string>& anatomy) {
     const auto& state = run_.stage(stage).state;
     if (!state) return;
     json bodies = json::array(), invisible = json::array();
@@ -78,14 +78,13 @@ class Collector {
       if (hidden.count(id)) invisible.push_back(index);
     };
     for (Body& body : bodies_of(*state, 5)) {
-      if (left_out.count(body.id) || body.id == "lumen" || body.id == "calcium") continue;
+      if (body.id == "lumen" || body.id == "calcium") continue;
       if (body.id != "frame" && body.surface.triangles.size() > most_triangles && stage != "cycle")
         body.surface = simplified(body.surface, most_triangles);
       add(store(body), body.id);
     }
-    if (with_anatomy)
-      for (const std::string id : {"calcium", "lumen"})
-        if (const int index = shared(id); index >= 0) add(index, id);
+    for (const std::string& id : anatomy)
+      if (const int index = shared(id); index >= 0) add(index, id);
     if (!bodies.empty())
       scenes_.push_back(
           {{"name", name}, {"bodies", bodies}, {"hidden", invisible}, {"beat", stage == "cycle"}});
@@ -187,12 +186,13 @@ class Collector {
 
 std::string viewer_json(const RunData& run, int frames) {
   Collector collector(run);
-  collector.scene("Anatomy and mesh", "mesher", {}, {}, true);
-  if (!run.stage("mesher").state) collector.scene("Anatomy", "segment", {}, {}, true);
-  collector.scene("Device, expanded", "stent", {}, {}, false);
-  collector.scene("Device, crimped", "crimp", {}, {}, false);
-  collector.scene("Deployed", "deploy", {}, {}, true);
-  collector.scene("Beat", "cycle", {}, {"skirt"}, true);
+  const std::vector<std::string> image{"calcium", "lumen"}, wall{"lumen"};
+  collector.scene("Anatomy and mesh", "mesher", {}, image);
+  if (!run.stage("mesher").state) collector.scene("Anatomy", "segment", {}, image);
+  collector.scene("Device, expanded", "stent", {}, {});
+  collector.scene("Device, crimped", "crimp", {}, {});
+  collector.scene("Deployed", "deploy", {}, wall);
+  collector.scene("Beat", "cycle", {"skirt"}, wall);  // calcium is known only where the image showed it
   collector.beat(frames);
   return collector.result().dump();
 }

@@ -84,7 +84,8 @@ std::vector<Facet> facets_of(const Surface& surface, const Camera& camera, const
   return facets;
 }
 
-Eigen::Vector4f shade(const Facet& facet, const std::array<float, 3>& w, float edge_distance, int samples) {
+Eigen::Vector4f shade(const Facet& facet, const std::array<float, 3>& w, float edge_distance, float height,
+                      int samples) {
   const auto& c = facet.corner;
   const Surface& surface = *facet.surface;
   Eigen::Vector3f colour = w[0] * c[0].colour + w[1] * c[1].colour + w[2] * c[2].colour;
@@ -107,7 +108,9 @@ Eigen::Vector4f shade(const Facet& facet, const std::array<float, 3>& w, float e
   }
   if (surface.edges) {
     const float line = std::clamp(1.2f - edge_distance / (0.75f * static_cast<float>(samples)), 0.0f, 1.0f);
-    colour *= 1 - 0.55f * line;
+    const float room =
+        std::min(1.0f, height / (12.0f * static_cast<float>(samples)));  // fine meshes stay bright
+    colour *= 1 - 0.55f * line * room;
     opacity = std::max(opacity, 0.8f * line * std::min(1.0f, 3 * opacity));
   }
   colour = colour.cwiseMin(1.0f).cwiseMax(0.0f);
@@ -135,7 +138,8 @@ void draw(const Facet& facet, Target& target, int samples, bool opaque) {
       const std::size_t i = target.at(x, y);
       if (z >= target.depth[i]) continue;
       const float edge = std::abs(area) * std::min({wa / la, wb / lb, wc / lc});
-      const Eigen::Vector4f colour = shade(facet, {wa, wb, wc}, edge, samples);
+      const Eigen::Vector4f colour =
+          shade(facet, {wa, wb, wc}, edge, std::abs(area) / std::max({la, lb, lc}), samples);
       if (opaque) {
         target.depth[i] = z;
         target.colour[i] = colour;
