@@ -77,7 +77,7 @@ double distance_to(const Vec3& p, const Points& x, const std::vector<Triangle>& 
   return nearest;
 }
 
-double gap_area(const Simulation& s, const Inputs& in, const Parameters& p) {
+double gap_area(const Simulation& s, const Inputs& in, const Parameters& p, double strut_depth) {
   const ShellBody* skirt = find(in.tissue, "skirt");
   if (!skirt) return 0;
   const double cell = 2;
@@ -97,12 +97,13 @@ double gap_area(const Simulation& s, const Inputs& in, const Parameters& p) {
   double area = 0;
   for (const Triangle& t : skirt->shell->mesh().triangles) {
     const Vec3 centre = (x[t[0]] + x[t[1]] + x[t[2]]) / 3;
-    double distance = -in.wall.value(centre) - 0.5 * skirt->shell->mesh().thickness_mm[t[0]];
+    // The struts lie between the skirt and what it seals against.
+    const double between = 0.5 * skirt->shell->mesh().thickness_mm[t[0]] + strut_depth;
+    double distance = -in.wall.value(centre) - between;
     if (in.native && distance > p.apposition_gap)
-      distance = std::min(
-          distance,
-          distance_to(centre, native, in.native->shell->mesh().triangles, cells, cell) -
-              0.5 * (skirt->shell->mesh().thickness_mm[t[0]] + in.native->shell->mesh().thickness_mm[0]));
+      distance =
+          std::min(distance, distance_to(centre, native, in.native->shell->mesh().triangles, cells, cell) -
+                                 between - 0.5 * in.native->shell->mesh().thickness_mm[0]);
     if (distance > p.apposition_gap) area += 0.5 * (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).norm();
   }
   return area;
@@ -144,7 +145,7 @@ Measures measure(const Simulation& s, const Inputs& in, const Parameters& p) {
   m.expanded_diameter_annulus_mm = annulus.perimeter / M_PI;
   m.eccentricity = annulus.widest > 0 ? 1 - annulus.narrowest / annulus.widest : 0;
   m.max_penetration_mm = s.wall_penetration_mm();
-  m.apposition_gap_area_mm2 = gap_area(s, in, p);
+  m.apposition_gap_area_mm2 = gap_area(s, in, p, 2 * strut);
 
   Points on_device = s.native_on_device();  // becomes the sum with the wall's forces
   std::vector<double> normal(s.system().nodes(), 0.0);

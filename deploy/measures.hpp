@@ -3,7 +3,8 @@
 //   implant_depth_mm               minus the mean height of the skirt's lower edge (of the inflow without
 //   skirt) expanded_diameter_annulus_mm   perimeter over pi of the frame's section at the annulus plane z =
 //   0, outside eccentricity                   1 - smallest / largest width of that section
-//   apposition_gap_area_mm2        area of skirt further than `apposition_gap` from wall and native leaflets
+//   apposition_gap_area_mm2        area of skirt whose outside, a strut's depth further out, is further than
+//                                  `apposition_gap` from wall and native leaflets
 //   contact_area_mm2               area of struts and skirt that touch wall or native leaflets
 //   chronic_outward_force_N        radial components of the contact forces on the device, summed
 //   max_penetration_mm             largest overlap with the wall
