@@ -11,7 +11,8 @@ namespace {
 
 constexpr double crown_width_power = 2.5;
 constexpr double crown_height_power = 2.2;
-constexpr double inward_turn = 0.8;  ///< |u| beyond which the free edge follows the wall
+constexpr double blunt_tip = 0.12;   ///< |u| within which the free edge keeps its least radius
+constexpr double inward_turn = 0.9;  ///< |u| beyond which it follows the wall
 constexpr double wedge_deg = 14;     ///< angle between free edge and wall at a commissure
 constexpr double clearance_fraction =
     0.12;                                  ///< largest distance to the wall where the edge follows it, of R_c
@@ -44,14 +45,15 @@ LeafletShape::LeafletShape(const Root& root, const LeafletProportions& p, double
   half_width_ = 0.5 * (to - from) - 0.5 * p.commissure_gap_mm / commissure_radius_;
   nadir_radius_ = root.wall_radius(middle_, 0);
 
-  const double fall = p.free_edge_angle_deg * std::numbers::pi / 180;
+  const double slack = 1 + p.free_edge_excess;
   const double coaptation = p.coaptation_height_factor * d;
-  const double edge_z = height - commissure_radius_ * std::tan(fall);
+  sizes_.free_edge_mm = std::max(p.free_edge_factor * d, 2 * slack * commissure_radius_);
+  const double straight = 0.5 * sizes_.free_edge_mm / slack;
+  const double edge_z =
+      height - std::sqrt(std::max(0.0, straight * straight - commissure_radius_ * commissure_radius_));
   const double contact_z = std::max(0.0, edge_z - coaptation);
   sizes_.peak_mm = p.free_edge_peak_factor * d;
-  sizes_.free_edge_mm = 2 * (1 + p.free_edge_excess) * commissure_radius_ / std::cos(fall);
-  sizes_.length_mm =
-      (1 + p.free_edge_excess) * (std::hypot(nadir_radius_, contact_z) + coaptation) + sizes_.peak_mm;
+  sizes_.length_mm = slack * (std::hypot(nadir_radius_, contact_z) + coaptation) + sizes_.peak_mm;
   fit_mid_radius();
 }
 
@@ -74,7 +76,9 @@ LeafletShape::Cylindrical LeafletShape::free_edge_at(double u) const {
                                     from_commissure * std::tan(wedge_deg * std::numbers::pi / 180));
   const double follow =
       root_.wall_radius(angle(u), z) - clearance + inset_ * std::max(0.0, 1 - from_commissure);
-  return {mid_radius_ + (follow - mid_radius_) * smooth_step(std::abs(u) / inward_turn), z};
+  return {mid_radius_ +
+              (follow - mid_radius_) * smooth_step((std::abs(u) - blunt_tip) / (inward_turn - blunt_tip)),
+          z};
 }
 
 Vec3 LeafletShape::attachment(double u) const {
@@ -109,6 +113,25 @@ void LeafletShape::fit_mid_radius() {
   }
 }
 
+/// Equal steps of the faster of attachment and free edge.
+std::vector<double> LeafletShape::columns(int count) const {
+  constexpr int fine = 2000;
+  const auto fine_u = [](int i) { return -std::cos(std::numbers::pi * i / fine); };
+  std::vector<double> advance{0};
+  for (int i = 1; i <= fine; ++i)
+    advance.push_back(advance.back() + std::max((attachment(fine_u(i)) - attachment(fine_u(i - 1))).norm(),
+                                                (free_edge(fine_u(i)) - free_edge(fine_u(i - 1))).norm()));
+  std::vector<double> u{-1};
+  for (int i = 1, k = 1; k < count; ++k) {
+    const double target = advance.back() * k / count;
+    while (advance[i] < target) ++i;
+    const double f = (target - advance[i - 1]) / (advance[i] - advance[i - 1]);
+    u.push_back(fine_u(i - 1) + f * (fine_u(i) - fine_u(i - 1)));
+  }
+  u.push_back(1);
+  return u;
+}
+
 geometry::TriMesh LeafletShape::sampled(int across, int along) const {
   geometry::TriMesh mesh;
   // Commissures are single points; the columns between them run from attachment to free edge.
@@ -118,9 +141,9 @@ geometry::TriMesh LeafletShape::sampled(int across, int along) const {
     if (i == across) return 1;
     return 2 + (i - 1) * (along + 1) + j;
   };
+  const auto u = columns(across);
   for (int i = 1; i < across; ++i) {
-    const double u = -std::cos(std::numbers::pi * i / across);
-    const Vec3 low = attachment(u), high = free_edge(u);
+    const Vec3 low = attachment(u[i]), high = free_edge(u[i]);
     for (int j = 0; j <= along; ++j) mesh.points.push_back(low + (high - low) * j / along);
   }
   for (int i = 0; i < across; ++i)

@@ -1,18 +1,19 @@
 // Native leaflets: how large they are, and their stress-free shape in a measured root.
 //
 // Sizes, from the closed valve (d annulus diameter, R_n wall radius at the nadirs, R_c at the commissures, H
-// height of the commissures, phi fall of the free edge, c coaptation height, e excess):
-//   z_f = H - R_c tan(phi)            height of the closed free edge at the axis        (Thubrikar 1990)
-//   z_b = z_f - c                     where coaptation begins
-//   free edge      = 2 (1 + e) R_c / cos(phi)                                 about 1.24 d
-//   leaflet length = (1 + e) (sqrt(R_n^2 + z_b^2) + c) + peak                 about 0.70 d (Swanson and Clark
-//   1974)
-// With R_n = R_c = d/2, H = 0.71 d, c = 0.17 d, phi = 34 deg, e = 0.03 they reproduce both published figures.
+// height of the commissures, c coaptation height, e excess):
+//   free edge      L = max(1.24 d, 2 (1 + e) R_c)                 (1.24 d: Swanson and Clark 1974)
+//   z_f = H - sqrt((L / (2 (1 + e)))^2 - R_c^2)                   height of the closed free edge at the axis
+//   z_b = z_f - c                                                 where coaptation begins
+//   leaflet length = (1 + e) (sqrt(R_n^2 + z_b^2) + c) + peak
+// With R_n = R_c = d/2, H = 0.71 d, c = 0.17 d, e = 0.03 and no peak the free edge falls by 34 degrees
+// (Thubrikar 1990: 34) and the length is 0.73 d (Swanson and Clark: 0.70): the published figures belong
+// together.
 //
 // Attachment: a crown on the wall,
 //   h(x) = 1 - (1 - |x|^2.5)^(1/2.2),  x in [-1, 1] from commissure to commissure, h from nadir 0 to
 //   commissure 1
-// (our fit to the line of Khelil et al. 2015, largest deviation 0.03 in h).
+// (our fit to the line of Khelil et al. 2015).
 //
 // Stress-free shape: half open and ruled. In each half-plane through the axis a straight line runs from the
 // attachment to the free edge, so leaflets keep to their own sectors and cannot cross. Seen along the axis
@@ -32,7 +33,7 @@ struct LeafletProportions {
   double annulus_diameter_mm = 0;
   double junction_z_mm = 0;  ///< height of the sinotubular junction
   double commissure_height_factor = 0.71;
-  double free_edge_angle_deg = 34;
+  double free_edge_factor = 1.24;
   double coaptation_height_factor = 0.17;
   double free_edge_excess = 0.03;
   double free_edge_peak_factor = 0.05;
@@ -74,6 +75,7 @@ class LeafletShape {
   struct Cylindrical {
     double radius, z;
   };
+  std::vector<double> columns(int count) const;
   Cylindrical attachment_at(double u) const;
   Cylindrical free_edge_at(double u) const;
   double angle(double u) const { return middle_ + u * half_width_; }

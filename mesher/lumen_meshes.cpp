@@ -46,9 +46,13 @@ LumenMeshes mesh_lumen(const AnatomyState& anatomy, const LumenOptions& options,
 
   LumenMeshes meshes;
   meshes.repairs = repaired.actions;
-  meshes.lumen =
-      geometry::remesh(geometry::cut_closed_between(repaired.mesh, low, high), {options.surface_edge_mm});
-  const auto open = geometry::without_caps(meshes.lumen, low, high);
+  const auto cut = geometry::without_caps(geometry::cut_closed_between(repaired.mesh, low, high), low, high);
+  geometry::RemeshOptions smooth_rims;
+  smooth_rims.edge_mm = options.surface_edge_mm;
+  smooth_rims.corner_angle_deg = 180;
+  // Ears that remeshing leaves on a rim lie in its plane like a cap.
+  const auto open = geometry::without_caps(geometry::remesh(cut, smooth_rims), low, high);
+  meshes.lumen = geometry::closed_by_caps(open, options.surface_edge_mm);
   meshes.wall =
       geometry::tetrahedral_wall(open, anatomy.lumen, {options.wall_thickness_mm, options.wall_layers});
   meshes.wall_region = regions(meshes.wall, anatomy.junction_mm);

@@ -32,7 +32,7 @@ LeafletProportions proportions_of(const Case& scene, const AnatomyState& anatomy
   p.annulus_diameter_mm = anatomy.annulus_diameter_mm;
   p.junction_z_mm = anatomy.junction_mm;
   p.commissure_height_factor = scene.real("native.commissure_height_factor");
-  p.free_edge_angle_deg = scene.real("native.free_edge_angle_deg");
+  p.free_edge_factor = scene.real("native.free_edge_factor");
   p.coaptation_height_factor = scene.real("native.coaptation_height_factor");
   p.free_edge_excess = scene.real("native.free_edge_excess");
   p.free_edge_peak_factor = scene.real("native.free_edge_peak_factor");

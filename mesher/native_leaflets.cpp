@@ -59,7 +59,7 @@ Leaflet mesh_leaflet(const LeafletShape& shape, const LeafletProportions& p, con
   const int along = std::max(12, int(std::ceil(1.5 * shape.sizes().length_mm / edge_mm)));
 
   Leaflet leaflet;
-  leaflet.mesh = geometry::remesh(shape.sampled(across, along), {edge_mm, 170, 40, 12});
+  leaflet.mesh = geometry::remesh(shape.sampled(across, along), {edge_mm, 180, 60, 12});
   auto& points = leaflet.mesh.points;
   leaflet.attached.assign(points.size(), 0);
   for (const auto& loop : geometry::border_loops(leaflet.mesh)) {

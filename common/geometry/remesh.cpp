@@ -4,10 +4,14 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
+#include "geometry/surface.hpp"
 #include "geometry/surface_cgal.hpp"
+#include "geometry/surface_fill.hpp"
 
 namespace valsalva::geometry {
 namespace {
@@ -19,7 +23,8 @@ using VertexFlags = CgalMesh::Property_map<CgalMesh::Vertex_index, bool>;
 /// Borders, and edges whose faces turn by more than the feature angle.
 EdgeFlags kept_edges(CgalMesh& mesh, double feature_angle_deg) {
   auto kept = mesh.add_property_map<CgalMesh::Edge_index, bool>("e:kept", false).first;
-  const double threshold = std::cos(feature_angle_deg * std::numbers::pi / 180);
+  const double threshold =
+      feature_angle_deg < 180 ? std::cos(feature_angle_deg * std::numbers::pi / 180) : -2;
   const auto normal = [&](CgalMesh::Halfedge_index h) -> Vec3 {
     const Vec3 a = from_cgal(mesh.point(mesh.source(h))), b = from_cgal(mesh.point(mesh.target(h)));
     return (b - a).cross(from_cgal(mesh.point(mesh.target(mesh.next(h)))) - a).normalized();
@@ -69,9 +74,40 @@ TriMesh remesh(const TriMesh& input, const RemeshOptions& options) {
                                .number_of_relaxation_steps(3)
                                .edge_is_constrained_map(kept)
                                .vertex_is_constrained_map(corners)
-                               .relax_constraints(true)
-                               .protect_constraints(false));
+                               .relax_constraints(false)
+                               .protect_constraints(options.protect_borders));
   return from_cgal(mesh);
+}
+
+TriMesh closed_by_caps(const TriMesh& open, double edge_mm) {
+  using Position = std::array<double, 3>;
+  const auto position_of = [](const Vec3& p) { return Position{p.x(), p.y(), p.z()}; };
+  TriMesh closed = open;
+  std::map<Position, int> number;
+  for (const auto& loop : border_loops(open)) {
+    double longest = 0;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Vec3 &a = open.points[loop[k]], &b = open.points[loop[(k + 1) % loop.size()]];
+      longest = std::max(longest, (a - b).norm());
+      number[position_of(a)] = loop[k];
+    }
+    RemeshOptions options;
+    options.edge_mm = std::max(edge_mm, 0.8 * longest);
+    options.protect_borders = true;
+    const TriMesh cap = remesh(compacted({open.points, filled_loop(open.points, loop)}), options);
+    for (const Triangle& t : cap.triangles) {
+      Triangle joined{};
+      for (int k = 0; k < 3; ++k) {
+        const Vec3& p = cap.points[t[k]];
+        const auto [found, fresh] =
+            number.try_emplace(position_of(p), static_cast<int>(closed.points.size()));
+        if (fresh) closed.points.push_back(p);
+        joined[k] = found->second;
+      }
+      closed.triangles.push_back(joined);
+    }
+  }
+  return closed;
 }
 
 }  // namespace valsalva::geometry

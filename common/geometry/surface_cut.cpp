@@ -14,7 +14,7 @@ namespace {
 /// Keeps the side where sign * (z - plane) < 0; the border lies exactly in the plane.
 TriMesh half(const TriMesh& input, double plane, double sign) {
   TriMesh mesh{input.points, {}};
-  const double snap = 1e-3 * edge_lengths(input).mean;
+  const double snap = 0.15 * edge_lengths(input).mean;
   for (Vec3& p : mesh.points)
     if (std::abs(p.z() - plane) < snap) p.z() = plane;
   const auto height = [&](int node) { return sign * (mesh.points[node].z() - plane); };

@@ -29,8 +29,10 @@ void declare_native(Schema& schema) {
       "native.commissure_height_factor", 0.71, {0.4, 1.2},
       "Height of the commissures above the nadirs in annulus diameters (Swanson and Clark 1974); never above "
       "the sinotubular junction");
-  schema.real("native.free_edge_angle_deg", 34, {5, 60},
-              "Fall of the closed valve's free edges towards the centre (Thubrikar 1990); sets their length");
+  schema.real(
+      "native.free_edge_factor", 1.24, {1, 2},
+      "Length of a free edge in annulus diameters (Swanson and Clark 1974); more where the commissures stand "
+      "too far apart for it");
   schema.real("native.coaptation_height_factor", 0.17, {0.05, 0.4},
               "Height of coaptation in annulus diameters (Swanson and Clark 1974)");
   schema.real("native.free_edge_excess", 0.03, {0, 0.3},
