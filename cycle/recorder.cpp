@@ -35,6 +35,7 @@ std::vector<std::string> columns() {
                                  "max_speed_cm_per_s",
                                  "von_mises_p99_kPa",
                                  "max_principal_strain_p99",
+                                 "law_exponent",
                                  "leaflet_gap_mm",
                                  "device_force_N",
                                  "device_slide_mm",
@@ -86,7 +87,7 @@ Recorder::Recorder(const Inputs& in, const Parameters& p, coupling::ImmersedFlow
         attached.push_back(in.leaflets->points[a]);
         valve_z_mm_ = std::min(valve_z_mm_, in.leaflets->points[a].z());
       }
-    disc_ = metrics::disc_of(attached, orifice_pixel_mm);
+    outline_ = metrics::outline_of(attached, orifice_pixel_mm);
   }
   if (in.skirt) {
     double low = 1e300, high = -1e300;
@@ -116,34 +117,39 @@ void Recorder::after_step(double time_s, const coupling::ImmersedStep& step, con
   if (time_s >= due && static_cast<int>(frame_time_s_.size()) < p_.frames_per_beat) add_frame(time_s);
 }
 
-void Recorder::stress_and_strain(double& von_mises_Pa, double& strain) const {
+Recorder::Load Recorder::load_of_leaflets() const {
   const coupling::ImmersedShell& shell = *system_.shell();
   const MPI_Comm comm = system_.flow().slab().comm;
   const int elements = shell.shell().elements(), ranks = mpi::size(comm);
-  std::vector<double> values(2 * static_cast<std::size_t>(elements), 0.0), stress, stretch, area;
+  std::vector<double> values(2 * static_cast<std::size_t>(elements), 0.0), stress, strain, area;
+  Load load;
   for (int e = mpi::rank(comm); e < elements; e += ranks) {
     const structure::ElementState now = shell.shell().element_state(shell.x(), e);
     values[2 * e] = now.von_mises_Pa;
     values[2 * e + 1] = 0.5 * (now.stretch_major * now.stretch_major - 1);
+    load.exponent = std::max(load.exponent, now.exponent);
   }
   if (ranks > 1) mpi::sum_in_place(comm, values.data(), values.size());
   for (int e = 0; e < elements; ++e) {
     stress.push_back(values[2 * e]);
-    stretch.push_back(values[2 * e + 1]);
+    strain.push_back(values[2 * e + 1]);
     area.push_back(shell.shell().reference_area(e));
   }
-  von_mises_Pa = metrics::weighted_percentile(stress, area, 0.99);
-  strain = metrics::weighted_percentile(stretch, area, 0.99);
+  load.von_mises_Pa = metrics::weighted_percentile(stress, area, 0.99);
+  load.strain = metrics::weighted_percentile(strain, area, 0.99);
+  load.exponent = mpi::max(comm, load.exponent);
+  return load;
 }
 
 void Recorder::add_row(double time_s, const coupling::ImmersedStep& step, const Terminals& terminals) {
   const fluid::Flow& flow = system_.flow();
   const fluid::Grid& grid = flow.grid();
   const circulation::LeftHeart* heart = terminals.heart();
-  double orifice = 0, von_mises = 0, strain = 0, gap = 0, pull = 0;
+  double orifice = 0, gap = 0, pull = 0;
+  Load load;
   if (const coupling::ImmersedShell* shell = system_.shell()) {
-    orifice = metrics::orifice_area(shell->x(), shell->shell().mesh().triangles, *disc_);
-    stress_and_strain(von_mises, strain);
+    orifice = metrics::orifice_area(shell->x(), shell->shell().mesh().triangles, *outline_);
+    load = load_of_leaflets();
     gap = shell->nearest();
     if (in_.frame) pull = shell->pull_on_clamps().z();
   }
@@ -167,8 +173,9 @@ void Recorder::add_row(double time_s, const coupling::ImmersedStep& step, const 
                           orifice / units::mm2_per_cm2,
                           jet / 10,
                           step.fluid.max_speed / 10,
-                          von_mises / units::pa_per_kPa,
-                          strain,
+                          load.von_mises_Pa / units::pa_per_kPa,
+                          load.strain,
+                          load.exponent,
                           gap,
                           force / units::uN_per_N,
                           slide_mm_,

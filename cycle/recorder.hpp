@@ -21,7 +21,7 @@ class Recorder {
   int beat_of(double time_s) const;
   /// The jet's largest velocity is looked for above this height.
   double valve_z_mm() const { return valve_z_mm_; }
-  double valve_radius_mm() const { return disc_ ? disc_->radius_mm : 0; }
+  double valve_radius_mm() const { return outline_ ? outline_->largest_radius() : 0; }
   double gap_area_mm2() const { return gap_ ? gap_->area_mm2() : 0; }
 
   /// History, sums and frames (below "frames/"), for the state and back.
@@ -38,13 +38,17 @@ class Recorder {
  private:
   void add_row(double time_s, const coupling::ImmersedStep& step, const Terminals& terminals);
   void add_frame(double time_s);
-  void stress_and_strain(double& von_mises_Pa, double& strain) const;
+  struct Load {
+    double von_mises_Pa = 0, strain = 0;  // 99th percentiles over the area
+    double exponent = 0;                  // the largest of the tissue law
+  };
+  Load load_of_leaflets() const;
 
   const Inputs& in_;
   const Parameters& p_;
   coupling::ImmersedFlow& system_;
   std::vector<int> device_;
-  std::optional<metrics::OrificeDisc> disc_;
+  std::optional<metrics::OrificeOutline> outline_;
   std::optional<metrics::ParavalvularGap> gap_;
   double valve_z_mm_ = 0;
   int low_plane_ = 0, high_plane_ = 0, slice_j_ = 0;

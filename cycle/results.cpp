@@ -168,7 +168,13 @@ void summarise(Summary& s, const Inputs& in, const Parameters& p, const Simulati
   s.simulated_s = simulation.time_s();
   if (history.rows() == 0) return;
   s.metrics["max_cfl"] = largest(history.column("max_cfl"));
-  s.metrics["largest_fibre_exponent"] = simulation.largest_exponent();
+  if (in.leaflets) {
+    s.metrics["largest_law_exponent"] = largest(history.column("law_exponent"));
+    if (s.metrics["largest_law_exponent"] > 6)
+      s.notes["tissue law"] =
+          "the exponential was continued by its Taylor polynomial beyond 6 somewhere: strains there are "
+          "bounds";
+  }
   s.metrics["returns_after_alarm"] = static_cast<double>(simulation.returns());
   if (in.frame) {
     s.metrics["device_migration_mm"] = std::abs(history.column("device_slide_mm").back());

@@ -28,8 +28,6 @@ class Simulation {
   const Terminals& terminals() const { return *terminals_; }
   const coupling::ImmersedStep& last_step() const { return last_; }
   long returns() const { return returns_; }
-  /// Of the tissue law's exponential, over all elements now; zero without leaflets.
-  double largest_exponent() const { return shell() ? shell()->shell().max_exponent(shell()->x()) : 0; }
 
   /// Restart entries, complete on rank 0 (collective); load continues bitwise at equal ranks.
   std::map<std::string, state::Array> save() const;

@@ -13,6 +13,7 @@ ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> she
       shell_(std::move(shell)),
       settings_(settings),
       transfer_(flow.slab(), settings.kernel),
+      sponge_(flow, settings.sponge),
       power_(shell_ ? shell_->x().size() : 0),
       scratch_(flow.slab()) {}
 
@@ -49,11 +50,12 @@ ImmersedStep ImmersedFlow::step(double at_most) {
   done.dt_s = planned_ > 0 ? planned_ : plan(at_most);
   planned_ = 0;
   flow_.clear_force();
+  sponge_.add_force(flow_, flow_.force());
   if (shell_) {
     shell_->forces(force_);
     transfer_.spread(force_, flow_.force());
   }
-  flow_.predict(done.dt_s, {.force = shell_ != nullptr, .old_pressure = true, .penalise = true});
+  flow_.predict(done.dt_s);
   done.fluid = flow_.project(done.dt_s);
   done.critical_s = shell_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
   if (shell_) {

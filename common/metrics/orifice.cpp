@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/errors.hpp"
 
@@ -28,27 +29,64 @@ void cover(std::vector<std::uint8_t>& pixels, int n, const std::array<Eigen::Vec
 
 }  // namespace
 
-double orifice_area(const Points& x, const std::vector<Triangle>& triangles, const OrificeDisc& disc) {
-  if (!(disc.radius_mm > 0) || !(disc.pixel_mm > 0))
-    throw InputError("orifice: disc of radius {} mm with pixels of {} mm; expected positive ones",
-                     disc.radius_mm, disc.pixel_mm);
-  const int half = static_cast<int>(std::ceil(disc.radius_mm / disc.pixel_mm)), n = 2 * half + 1;
+double OrificeOutline::largest_radius() const {
+  return radius_mm.empty() ? 0 : *std::max_element(radius_mm.begin(), radius_mm.end());
+}
+
+double OrificeOutline::radius_at(double x, double y) const {
+  const double turn = std::atan2(y, x) / (2 * std::numbers::pi) + 0.5;
+  const std::size_t sector = static_cast<std::size_t>(turn * static_cast<double>(radius_mm.size()));
+  return radius_mm[std::min(radius_mm.size() - 1, sector)];
+}
+
+OrificeOutline outline_of(const Points& attached, double pixel_mm) {
+  VALSALVA_ASSERT(!attached.empty());
+  constexpr int sectors = 72;
+  OrificeOutline outline;
+  outline.pixel_mm = pixel_mm;
+  for (const Vec3& p : attached) outline.centre += p.head<2>() / static_cast<double>(attached.size());
+  std::vector<double> radius(sectors, 0.0);
+  for (const Vec3& p : attached) {
+    const Eigen::Vector2d away = p.head<2>() - outline.centre;
+    const double turn = std::atan2(away.y(), away.x()) / (2 * std::numbers::pi) + 0.5;
+    double& r = radius[std::min(sectors - 1, static_cast<int>(turn * sectors))];
+    r = std::max(r, away.norm());
+  }
+  outline.radius_mm = radius;
+  for (int s = 0; s < sectors; ++s) {
+    if (radius[s] > 0) continue;
+    int before = 1, after = 1;
+    while (radius[(s + sectors - before) % sectors] == 0) ++before;
+    while (radius[(s + after) % sectors] == 0) ++after;
+    outline.radius_mm[s] =
+        (after * radius[(s + sectors - before) % sectors] + before * radius[(s + after) % sectors]) /
+        (before + after);
+  }
+  return outline;
+}
+
+double orifice_area(const Points& x, const std::vector<Triangle>& triangles, const OrificeOutline& outline) {
+  const double largest = outline.largest_radius(), pixel = outline.pixel_mm;
+  if (!(largest > 0) || !(pixel > 0))
+    throw InputError("orifice: an outline of radius {} mm with pixels of {} mm; expected positive ones",
+                     largest, pixel);
+  const int half = static_cast<int>(std::ceil(largest / pixel)), n = 2 * half + 1;
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(n) * n, open);
   auto to_pixel = [&](const Vec3& p) {
-    return Eigen::Vector2d((p.head<2>() - disc.centre) / disc.pixel_mm + Eigen::Vector2d::Constant(half));
+    return Eigen::Vector2d((p.head<2>() - outline.centre) / pixel + Eigen::Vector2d::Constant(half));
   };
   for (const Triangle& t : triangles)
     cover(pixels, n, {to_pixel(x[t[0]]), to_pixel(x[t[1]]), to_pixel(x[t[2]])});
 
-  const double radius = disc.radius_mm / disc.pixel_mm;
-  auto distance = [&](int i, int j) { return std::hypot(i - half, j - half); };
   std::vector<std::array<int, 2>> front;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
-      std::uint8_t& pixel = pixels[static_cast<std::size_t>(j) * n + i];
-      if (distance(i, j) > radius) pixel = covered;
-      if (pixel == open && distance(i, j) <= radius / 3) {
-        pixel = reached;
+      std::uint8_t& at = pixels[static_cast<std::size_t>(j) * n + i];
+      const double distance = pixel * std::hypot(i - half, j - half);
+      const double radius = outline.radius_at(i - half, j - half);
+      if (distance > radius) at = covered;
+      if (at == open && distance <= radius / 3) {
+        at = reached;
         front.push_back({i, j});
       }
     }
@@ -64,17 +102,7 @@ double orifice_area(const Points& x, const std::vector<Triangle>& triangles, con
       ++count;
     }
   }
-  return count * disc.pixel_mm * disc.pixel_mm;
-}
-
-OrificeDisc disc_of(const Points& attached, double pixel_mm) {
-  VALSALVA_ASSERT(!attached.empty());
-  OrificeDisc disc;
-  disc.pixel_mm = pixel_mm;
-  for (const Vec3& p : attached) disc.centre += p.head<2>() / static_cast<double>(attached.size());
-  for (const Vec3& p : attached)
-    disc.radius_mm = std::max(disc.radius_mm, (p.head<2>() - disc.centre).norm());
-  return disc;
+  return static_cast<double>(count) * pixel * pixel;
 }
 
 }  // namespace valsalva::metrics
