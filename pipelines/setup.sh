@@ -9,8 +9,8 @@ packages="
   libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libpetsc-real-dev libfftw3-dev
   libcgal-dev libgmsh-dev libopenvdb-dev libboost-iostreams-dev libboost-system-dev libtbb-dev libblosc-dev
   libjemalloc-dev libinsighttoolkit5-dev libpng-dev zlib1g-dev
-  libjs-three libjs-chart.js
-  chromium python3-vtk9 clang-format clang-tidy
+  libjs-three
+  chromium python3-vtk9 python3-h5py clang-format clang-tidy
 "
 missing=""
 for package in $packages; do

@@ -75,10 +75,7 @@ class Chain:
             words += ["--fidelity", self.fidelity]
         for pair in self.overrides:
             words += ["--set", pair]
-        if stage != "report":
-            words += ["--out", str(self.folder / stage)]
-        else:
-            words += ["--out", str(self.folder)]
+        words += ["--out", str(self.folder / stage)]
         return words + list(extra)
 
     def environment(self, stage):
