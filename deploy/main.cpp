@@ -75,11 +75,6 @@ class Run {
     summarise(m);
   }
 
-  void summarise_steps() {
-    context_.summary.steps = step_;
-    context_.summary.simulated_s = simulation_->time_s();
-  }
-
  private:
   void start() {
     if (const auto state = state::resume(context_)) {
@@ -122,6 +117,8 @@ class Run {
                              context_.run.path().string());
     }
     ++step_;
+    context_.summary.steps = step_;
+    context_.summary.simulated_s = simulation_->time_s();
     // At rest and just after release there is nothing to compare with; both are measured against what is
     // stored.
     if (act_ == Act::expansion)
@@ -201,9 +198,7 @@ void run(StageContext& context) {
     log::info("deploy works on one rank with threads; the other ranks repeat it");
   const Parameters p = read_parameters(context.scene);
   Run deployment(context, read_inputs(context.parent_state("crimp"), context.parent_state("mesher"), p), p);
-  const bool finished = deployment.go();
-  deployment.summarise_steps();
-  if (finished) deployment.finish();
+  if (deployment.go()) deployment.finish();
 }
 
 Estimate estimate(const Case& scene, int) {
