@@ -118,7 +118,8 @@ Anatomy from_labels(const Case& scene, const std::filesystem::path& input) {
 Anatomy from_surface(const Case& scene, const std::filesystem::path& input) {
   const geometry::RepairedSurface repaired =
       geometry::repair_closed_surface(read_surface(input), {}, input.string());
-  const LumenOptions options = options_of(scene);
+  LumenOptions options = options_of(scene);
+  options.closing_mm = options.opening_mm = 0;  // a surface means what it shows
   Anatomy anatomy;
   anatomy.plane_note = "given in the case";
   Vec3 low = repaired.mesh.points.front(), high = low;

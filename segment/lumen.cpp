@@ -21,6 +21,10 @@ constexpr double margin_mm = 8;  // real data beyond the cuts, for the morpholog
 constexpr double ends_mm = 20;   // straight continuation while distances are taken, so that no end is felt
 constexpr double kept_mm = 6;    // of which so much stays in the result, on every side
 constexpr double least_upper_cut_mm = 20;
+constexpr double most_oblique = 1.6;  // area of the upper cut over that of the normal section
+constexpr double widest_annulus_mm = 42, widest_section_mm2 = 2400;  // beyond any patient's
+constexpr double reach_mm = 9;  // distances are right up to here, and every radius is smaller
+constexpr double corner_mm = 2, largest_parting_mm = 8.5;
 constexpr double least_upright = 0.6;  // cosine between the vessel and the axis at the upper cut
 
 double median(std::vector<double> values) {
@@ -39,6 +43,16 @@ std::string threshold_words(const Statistics& found) {
              : std::string("anatomy.labels");
 }
 
+/// Of all the lumen at one height.
+double area_at(const GridSdf& distance, double z) {
+  const auto [nx, ny, nz] = distance.dimensions;
+  const int k = std::clamp(int(std::lround((z - distance.origin.z()) / distance.spacing)), 0, nz - 1);
+  double samples = 0;
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) samples += distance.at(i, j, k) < 0;
+  return samples * distance.spacing * distance.spacing;
+}
+
 /// Where the vessel can be cut by z = const, at most `wanted`.
 double upper_cut(const GridSdf& lumen, double wanted, std::string& note) {
   geometry::CentrelineOptions options;
@@ -50,6 +64,13 @@ double upper_cut(const GridSdf& lumen, double wanted, std::string& note) {
                          std::acos(least_upright) * 180 / 3.14159265358979, p.position.z());
       break;
     }
+    const geometry::Plane level = geometry::Plane::at(p.position, Vec3::UnitZ());
+    const geometry::Loop loop =
+        geometry::loop_at_origin(geometry::section(lumen, level, options.half_width_mm, options.lattice_mm));
+    if (loop.empty() || geometry::area(loop) > most_oblique * p.section.area_mm2) {
+      note = fmt::format("a horizontal cut is no round disc from z = {:.0f} mm on", p.position.z());
+      break;
+    }
     reached = std::max(reached, p.position.z());
     if (reached >= wanted) return wanted;
   }
@@ -57,68 +78,96 @@ double upper_cut(const GridSdf& lumen, double wanted, std::string& note) {
   return std::floor(reached);
 }
 
-void check_leak(const GridSdf& lumen, double low, double high, const Frame& frame,
-                const LumenOptions& options, const Statistics& found) {
+/// What is found of the vessel at one opening radius; `leak` says what is wrong with it, empty when nothing
+/// is.
+struct Attempt {
+  GridSdf distance;
+  double z_upper_mm = 0;
+  std::string cut_note, leak;
+};
+
+Attempt attempt(const GridSdf& body, double parting_mm, const Frame& frame, const std::vector<Vec3>& seeds,
+                const LumenOptions& options) {
+  const geometry::Plane plane = geometry::Plane::at(Vec3::Zero(), Vec3::UnitZ());
+  Attempt result;
+  GridSdf& distance = result.distance;
+  distance = parted(body, parting_mm, parting_mm > options.opening_mm ? corner_mm : 0, seeds);
+  if (parting_mm > options.opening_mm) distance = parted(distance, options.opening_mm, 0, seeds);
+  const geometry::Loop loop =
+      geometry::loop_at_origin(geometry::section(distance, plane, options.half_width_mm, options.spacing_mm));
+  if (loop.empty()) {
+    result.cut_note = "there is no lumen at the annulus";
+    return result;
+  }
+  const double width = geometry::caliper(loop).greatest_mm;
+  if (width > widest_annulus_mm) {
+    result.leak =
+        fmt::format("the section at the annulus plane is {:.0f} mm wide, expected {:.0f} mm at most", width,
+                    widest_annulus_mm);
+    return result;
+  }
+  limit_to_channel(distance, loop, options.channel_margin_mm);
+  distance = parted(geometry::redistanced(distance, reach_mm), options.opening_mm, 0, seeds);
+  // Only now are leaflets filled: before, the closing would bridge the thin walls between neighbours.
+  if (options.closing_mm > 0) distance = closed(distance, options.closing_mm);
+  result.z_upper_mm = upper_cut(distance, options.upper_cut_mm, result.cut_note);
+  continue_straight(distance, -options.lower_cut_mm, result.z_upper_mm);
+  distance = geometry::redistanced(geometry::component_at(distance, {Vec3::Zero()}), reach_mm);
   Vec3 where;
-  if (touches_side(lumen, low, high, &where))
-    throw InputError(
-        "segmentation leaks: the lumen reaches the side of the working box at {} ({:.0f} mm above the "
-        "annulus, "
-        "volume {:.0f} mL); raise {}, raise anatomy.opening_mm (now {}), or lower anatomy.upper_cut_mm (now "
-        "{})",
-        text_of(frame.to_scanner(where)), where.z(), geometry::volume_inside(lumen) / 1000,
-        threshold_words(found), options.opening_mm, options.upper_cut_mm);
+  if (touches_side(distance, -options.lower_cut_mm, result.z_upper_mm, &where))
+    result.leak = fmt::format(
+        "the lumen reaches the side of the working box at {}, {:.0f} mm above the annulus; its "
+        "volume is {:.0f} mL",
+        text_of(frame.to_scanner(where)), where.z(), geometry::volume_inside(distance) / 1000);
+  else
+    for (double z = 0; z <= result.z_upper_mm; z += 2) {
+      const double area = area_at(distance, z);
+      if (area > widest_section_mm2)
+        result.leak =
+            fmt::format("the section {:.0f} mm above the annulus has {:.0f} mm2, expected {:.0f} mm2 at most",
+                        z, area, widest_section_mm2);
+    }
+  return result;
 }
 
 /// From the raw field on the working grid to the open-ended lumen.
-Lumen finish(GridSdf field, const Frame& frame, const LumenOptions& options, const Statistics& found,
-             bool morphology) {
-  const Vec3 inside = Vec3::Zero();
-  GridSdf distance = geometry::redistanced(field);
-  const auto annulus_loop = [&](const GridSdf& of) {
-    return geometry::loop_at_origin(
-        geometry::section(of, geometry::Plane::at(inside, Vec3::UnitZ()), 40, options.spacing_mm));
-  };
-  if (morphology) distance = closed(distance, options.closing_mm);
-  // The channel keeps the side of the aorta: parts of the annulus plane that belong to other chambers fall to
-  // the opening before its contour is taken.
-  const GridSdf opened_once = morphology ? opened(distance, options.opening_mm, inside) : distance;
-  const geometry::Loop loop = annulus_loop(opened_once);
-  if (loop.empty())
+/// seeds: points on both sides of the valve, so that leaflets that nearly touch do not part the vessel.
+Lumen finish(const GridSdf& field, const Frame& frame, const std::vector<Vec3>& seeds,
+             const LumenOptions& options, const Statistics& found) {
+  std::vector<Vec3> inside{Vec3::Zero()};
+  for (const Vec3& seed : seeds) inside.push_back(frame.from_scanner(seed));
+  const GridSdf body = geometry::redistanced(field, reach_mm);
+  // Walls thinner than a voxel let neighbours run together: part them at the smallest radius that does it.
+  Attempt best;
+  double parting = options.opening_mm;
+  for (;; parting += 1.5) {
+    best = attempt(body, parting, frame, inside, options);
+    if (best.leak.empty() || parting + 1.5 > largest_parting_mm) break;
+    log::info("opening by {:.1f} mm: {}", parting, best.leak);
+  }
+  if (!best.leak.empty())
     throw InputError(
-        "segmentation is empty: no lumen wider than {} mm at the annulus centre {}; lower {}, or move "
-        "anatomy.annulus_centre_mm",
-        2 * options.opening_mm, text_of(frame.origin), threshold_words(found));
-  const geometry::SectionFigures annulus =
-      geometry::figures(loop, geometry::Plane::at(inside, Vec3::UnitZ()));
-  if (annulus.greatest_mm > 45)
+        "segmentation leaks: {}, also when necks up to {:.0f} mm are cut; raise {}, move "
+        "anatomy.annulus_centre_mm, turn anatomy.annulus_normal or lower anatomy.upper_cut_mm (now {:g})",
+        best.leak, 2 * parting, threshold_words(found), options.upper_cut_mm);
+  if (best.z_upper_mm < least_upper_cut_mm)
     throw InputError(
-        "segmentation leaks: the section at the annulus plane is {:.0f} mm wide; raise {}, or move "
-        "anatomy.annulus_centre_mm or turn anatomy.annulus_normal",
-        annulus.greatest_mm, threshold_words(found));
-  distance = opened_once;
-  limit_to_channel(distance, loop, options.channel_margin_mm);
-  distance = geometry::redistanced(geometry::component_at(distance, inside));
-
+        "segmentation is empty: {}, expected {:.0f} mm of lumen above the annulus {} at least; lower {}, "
+        "or move anatomy.annulus_centre_mm",
+        best.cut_note, least_upper_cut_mm, text_of(frame.origin), threshold_words(found));
   Lumen lumen;
+  lumen.frame = frame;
   lumen.statistics = found;
+  lumen.cut_note = best.cut_note;
+  lumen.parting_mm = parting;
   lumen.z_lower_mm = -options.lower_cut_mm;
-  lumen.z_upper_mm = upper_cut(distance, options.upper_cut_mm, lumen.cut_note);
-  check_leak(distance, lumen.z_lower_mm, lumen.z_upper_mm, frame, options, found);
-  if (lumen.z_upper_mm < least_upper_cut_mm)
-    throw InputError(
-        "segmentation is empty above the valve: {}, expected {:.0f} mm at least; lower {}, or move "
-        "anatomy.annulus_centre_mm",
-        lumen.cut_note, least_upper_cut_mm, threshold_words(found));
-
-  continue_straight(distance, lumen.z_lower_mm, lumen.z_upper_mm);
-  distance = geometry::redistanced(geometry::component_at(distance, inside));
+  lumen.z_upper_mm = best.z_upper_mm;
+  GridSdf distance = std::move(best.distance);
   const double before = geometry::volume_inside(distance);
   if (options.smoothing_mm > 0) distance = geometry::smoothed(distance, options.smoothing_mm);
   lumen.smoothing_volume_change_pct = 100 * (geometry::volume_inside(distance) / before - 1);
   continue_straight(distance, lumen.z_lower_mm, lumen.z_upper_mm);
   lumen.distance = geometry::redistanced(distance);
-  lumen.frame = frame;
   return lumen;
 }
 
@@ -207,7 +256,7 @@ Lumen lumen_of_contrast(const Image& image, const Frame& frame, const std::vecto
     value = float(options.spacing_mm * std::clamp((found.lumen_threshold - value) / contrast, -1.0, 1.0));
   const double low = -options.lower_cut_mm - margin_mm, high = options.upper_cut_mm + margin_mm;
   continue_straight(field, low, high);
-  Lumen lumen = finish(std::move(field), frame, options, found, true);
+  Lumen lumen = finish(field, frame, seeds, options, found);
   lumen.calcium = calcium_of(brightness, lumen.distance,
                              {found.calcium_threshold, options.metal_threshold, options.min_calcium_mm3});
   trim(lumen);
@@ -233,7 +282,7 @@ Lumen lumen_of_labels(const Image& image, const Frame& frame, const std::vector<
     return options.spacing_mm * (1 - 2 * part.sample(frame.to_scanner(x)));
   });
   continue_straight(field, -options.lower_cut_mm - margin_mm, options.upper_cut_mm + margin_mm);
-  Lumen lumen = finish(std::move(field), frame, options, {}, true);
+  Lumen lumen = finish(field, frame, {}, options, {});
   trim(lumen);
   return lumen;
 }
@@ -241,7 +290,7 @@ Lumen lumen_of_labels(const Image& image, const Frame& frame, const std::vector<
 Lumen lumen_of_field(const std::function<double(const Vec3&)>& inside, const Frame& frame,
                      const LumenOptions& options) {
   GridSdf field = working_grid(options, [&](const Vec3& x) { return inside(frame.to_scanner(x)); });
-  Lumen lumen = finish(std::move(field), frame, options, {}, false);
+  Lumen lumen = finish(field, frame, {}, options, {});
   trim(lumen);
   return lumen;
 }
@@ -297,8 +346,8 @@ Frame annulus_from_seeds(const Image& image, const std::vector<Vec3>& seeds, con
   GridSdf field = working_grid(coarse, [&](const Vec3& x) {
     return (found.lumen_threshold - part.sample(rough.to_scanner(x))) / found.lumen_threshold;
   });
-  const GridSdf lumen =
-      opened(closed(geometry::redistanced(field), options.closing_mm), options.opening_mm, Vec3::Zero());
+  const GridSdf lumen = parted(geometry::redistanced(field, reach_mm), options.opening_mm, 0,
+                               {Vec3::Zero(), rough.from_scanner(seeds.back())});
   const auto line = geometry::follow(lumen, Vec3::Zero(), Vec3::UnitZ(), {});
   if (line.size() < 15)
     throw InputError(

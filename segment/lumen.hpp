@@ -42,6 +42,7 @@ struct Lumen {
   std::optional<geometry::GridSdf> calcium;  ///< same grid; absent: none found
   double z_lower_mm = 0, z_upper_mm = 0;     ///< the cuts
   double smoothing_volume_change_pct = 0;
+  double parting_mm = 0;  ///< radius at which neighbours came apart
   Statistics statistics;  ///< zero where no image values were used
   std::string cut_note;   ///< why the upper cut is lower than asked for; empty when it is not
 };

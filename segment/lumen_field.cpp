@@ -10,9 +10,18 @@ namespace {
 
 using geometry::GridSdf;
 
+constexpr double margin_mm = 9;  // distances are right up to here, and every radius is smaller
+
 GridSdf shifted(GridSdf field, double by) {
   for (float& value : field.values) value += float(by);
   return field;
+}
+
+/// sign 1: the greater of both (intersection); -1: the smaller (union).
+GridSdf greatest(GridSdf a, const GridSdf& b, float sign) {
+  for (std::size_t n = 0; n < a.values.size(); ++n)
+    a.values[n] = sign * std::max(sign * a.values[n], sign * b.values[n]);
+  return a;
 }
 
 Vec3 position(const GridSdf& grid, int i, int j, int k) {
@@ -22,20 +31,17 @@ Vec3 position(const GridSdf& grid, int i, int j, int k) {
 }  // namespace
 
 GridSdf closed(const GridSdf& distance, double radius_mm) {
-  const GridSdf grown = geometry::redistanced(geometry::without_cavities(shifted(distance, -radius_mm)));
-  GridSdf result = shifted(grown, radius_mm);
+  const GridSdf grown =
+      geometry::redistanced(geometry::without_cavities(shifted(distance, -radius_mm)), radius_mm + margin_mm);
   // Closing never removes: round-off of the two distances must not either.
-  for (std::size_t n = 0; n < result.values.size(); ++n)
-    result.values[n] = std::min(result.values[n], distance.values[n]);
-  return geometry::redistanced(geometry::without_cavities(result));
+  const GridSdf result = greatest(shifted(grown, radius_mm), distance, -1);
+  return geometry::redistanced(geometry::without_cavities(result), margin_mm);
 }
 
-GridSdf opened(const GridSdf& distance, double radius_mm, const Vec3& seed) {
-  const GridSdf core = geometry::component_at(shifted(distance, radius_mm), seed);
-  GridSdf result = shifted(geometry::redistanced(core), -radius_mm);
-  for (std::size_t n = 0; n < result.values.size(); ++n)
-    result.values[n] = std::max(result.values[n], distance.values[n]);
-  return geometry::redistanced(geometry::component_at(result, seed));
+GridSdf parted(const GridSdf& distance, double radius_mm, double corner_mm, const std::vector<Vec3>& seeds) {
+  const GridSdf core = geometry::component_at(shifted(distance, radius_mm), seeds);
+  const GridSdf reach = shifted(geometry::redistanced(core, radius_mm + margin_mm), -radius_mm - corner_mm);
+  return geometry::redistanced(geometry::component_at(greatest(reach, distance, 1), seeds), margin_mm);
 }
 
 void limit_to_channel(GridSdf& field, const geometry::Loop& annulus, double margin_mm) {

@@ -6,10 +6,12 @@
 
 namespace valsalva::segment {
 
-/// Fills gaps narrower than twice the radius; a signed distance in, a signed distance out.
+/// Fills gaps narrower than twice the radius. In and out: signed distances, right up to a few mm.
 geometry::GridSdf closed(const geometry::GridSdf& distance, double radius_mm);
-/// Removes parts narrower than twice the radius and what hangs on them; keeps the piece at `seed`.
-geometry::GridSdf opened(const geometry::GridSdf& distance, double radius_mm, const Vec3& seed);
+/// Removes parts narrower than twice the radius and what hangs on them; keeps the pieces at the seeds, and
+/// their corners: all of the inside within `corner_mm` of the opened body stays.
+geometry::GridSdf parted(const geometry::GridSdf& distance, double radius_mm, double corner_mm,
+                         const std::vector<Vec3>& seeds);
 /// Below z = 0 only what lies within `margin` of the contour's inside stays.
 void limit_to_channel(geometry::GridSdf& field, const geometry::Loop& annulus, double margin_mm);
 /// Every layer below z_lower (above z_upper) becomes the layer at that height.

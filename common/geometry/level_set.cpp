@@ -62,10 +62,10 @@ float eikonal(float a, float b, float c, float h) {
 }
 
 /// Distances beyond the band from those inside it; signs are there already.
-void sweep(GridSdf& distance) {
+void sweep(GridSdf& distance, double reach_mm) {
   const auto [nx, ny, nz] = distance.dimensions;
   const float h = float(distance.spacing), edge = band * h * 0.999f;
-  const float far = std::numeric_limits<float>::max();
+  const float far = std::numeric_limits<float>::max(), reach = float(reach_mm);
   std::vector<float> d(distance.values.size());
   std::vector<char> fixed(d.size());
   for (std::size_t n = 0; n < d.size(); ++n) {
@@ -85,9 +85,10 @@ void sweep(GridSdf& distance) {
           const float a = std::min(i > 0 ? d[n - sx] : far, i + 1 < nx ? d[n + sx] : far);
           const float b = std::min(j > 0 ? d[n - sy] : far, j + 1 < ny ? d[n + sy] : far);
           const float c = std::min(k > 0 ? d[n - sz] : far, k + 1 < nz ? d[n + sz] : far);
-          if (std::min({a, b, c}) < far) d[n] = std::min(d[n], eikonal(a, b, c, h));
+          if (std::min({a, b, c}) < reach) d[n] = std::min(d[n], eikonal(a, b, c, h));
         }
-  const float none = h * float(nx + ny + nz);  // a grid without any surface
+  // Beyond the reach, or without any surface.
+  const float none = std::min(h * float(nx + ny + nz), reach + h);
   for (std::size_t n = 0; n < d.size(); ++n)
     distance.values[n] = std::copysign(std::min(d[n], none), distance.values[n]);
 }
@@ -120,10 +121,10 @@ std::vector<char> reached(const GridSdf& field, const std::vector<std::size_t>& 
 
 }  // namespace
 
-GridSdf redistanced(const GridSdf& field) {
+GridSdf redistanced(const GridSdf& field, double reach_mm) {
   const auto rebuilt = openvdb::tools::levelSetRebuild(*to_vdb(field), 0.0f, band);
   GridSdf distance = from_vdb(*rebuilt, field);
-  sweep(distance);
+  sweep(distance, reach_mm);
   return distance;
 }
 
@@ -139,7 +140,7 @@ GridSdf signed_distance(const TriMesh& closed, const GridSdf& shape) {
   for (const Triangle& t : closed.triangles) triangles.emplace_back(t[0], t[1], t[2]);
   const auto grid = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*transform, points, triangles, band);
   GridSdf distance = from_vdb(*grid, shape);
-  sweep(distance);
+  sweep(distance, 1e9);
   return distance;
 }
 
@@ -173,7 +174,7 @@ GridSdf smoothed(const GridSdf& distance, double length_mm) {
   // One step of OpenVDB's flow advances the pseudo-time by spacing^2 / 6.
   const int steps = int(std::ceil(3 * length_mm * length_mm / (distance.spacing * distance.spacing)));
   for (int step = 0; step < steps; ++step) filter.meanCurvature();
-  GridSdf flowed = redistanced(from_vdb(*grid, distance));
+  GridSdf flowed = redistanced(from_vdb(*grid, distance), 4 * length_mm + 2 * distance.spacing);
   double low = -2 * length_mm, high = 2 * length_mm;  // of the offset outward, by bisection
   GridSdf moved = flowed;
   for (int iteration = 0; iteration < 40; ++iteration) {
@@ -193,12 +194,15 @@ double volume_inside(const GridSdf& distance) {
   return sum * h * h * h;
 }
 
-GridSdf component_at(const GridSdf& field, const Vec3& seed) {
-  const Vec3 index = (seed - field.origin) / field.spacing;
-  std::array<int, 3> at{};
-  for (int d = 0; d < 3; ++d) at[d] = std::clamp(int(std::lround(index[d])), 0, field.dimensions[d] - 1);
-  const std::size_t start = (std::size_t(at[2]) * field.dimensions[1] + at[1]) * field.dimensions[0] + at[0];
-  const std::vector<char> kept = reached(field, {start}, true);
+GridSdf component_at(const GridSdf& field, const std::vector<Vec3>& seeds) {
+  std::vector<std::size_t> starts;
+  for (const Vec3& seed : seeds) {
+    const Vec3 index = (seed - field.origin) / field.spacing;
+    std::array<int, 3> at{};
+    for (int d = 0; d < 3; ++d) at[d] = std::clamp(int(std::lround(index[d])), 0, field.dimensions[d] - 1);
+    starts.push_back((std::size_t(at[2]) * field.dimensions[1] + at[1]) * field.dimensions[0] + at[0]);
+  }
+  const std::vector<char> kept = reached(field, starts, true);
   GridSdf result = field;
   for (std::size_t n = 0; n < kept.size(); ++n)
     if (field.values[n] < 0 && !kept[n]) result.values[n] = float(field.spacing) / 2;
@@ -211,7 +215,7 @@ GridSdf without_cavities(const GridSdf& field) {
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i)
-        if (i == 0 || j == 0 || i + 1 == nx || j + 1 == ny)
+        if (i == 0 || j == 0 || k == 0 || i + 1 == nx || j + 1 == ny || k + 1 == nz)
           starts.push_back((std::size_t(k) * ny + j) * nx + i);
   const std::vector<char> outside = reached(field, starts, false);
   GridSdf result = field;

@@ -12,7 +12,8 @@
 namespace valsalva::geometry {
 
 /// Signed distance to the zero level of any continuous field (only its zero level and its sign count).
-GridSdf redistanced(const GridSdf& field);
+/// Farther away than `reach_mm` only the sign is right, and the size is at least the reach.
+GridSdf redistanced(const GridSdf& field, double reach_mm = 1e9);
 
 /// Signed distance to a closed surface, on the grid of `shape` (its values are not read).
 GridSdf signed_distance(const TriMesh& closed, const GridSdf& shape);
@@ -27,11 +28,11 @@ GridSdf smoothed(const GridSdf& distance, double length_mm);
 /// Volume where the signed distance is negative, by a Heaviside function smeared over one spacing; mm3.
 double volume_inside(const GridSdf& distance);
 
-/// The part of the inside that is connected to the sample nearest to `seed` (6 neighbours); every other
-/// inside sample gets +spacing / 2. Empty (all positive) when the seed is outside.
-GridSdf component_at(const GridSdf& field, const Vec3& seed);
+/// The parts of the inside that are connected to the samples nearest to the seeds (6 neighbours); every other
+/// inside sample gets +spacing / 2. Empty (all positive) when all seeds are outside.
+GridSdf component_at(const GridSdf& field, const std::vector<Vec3>& seeds);
 
-/// Outside samples that no path of outside samples joins to a side face (x or y) become inside.
+/// Outside samples that no path of outside samples joins to a face of the grid become inside.
 GridSdf without_cavities(const GridSdf& field);
 
 /// Samples [low, high] of the grid, both included, in each direction.

@@ -56,19 +56,19 @@ void declare_anatomy(Schema& schema) {
 void declare_phantom(Schema& schema) {
   schema.table("phantom",
                "The synthetic contrast CT made where anatomy.kind = \"phantom\" (every number assumed)");
-  schema.real("phantom.annulus_mm", 24, {15, 35}, "Mean annulus diameter");
+  schema.real("phantom.annulus_mm", 22.5, {15, 35}, "Mean annulus diameter");
   schema.real("phantom.ovality", 0.85, {0.6, 1}, "Least over greatest annulus diameter");
-  schema.real("phantom.lvot_mm", 24.5, {12, 40}, "Diameter of the outflow tract");
-  schema.real("phantom.sinus_mm", 33, {18, 50}, "Largest diameter of the sinuses");
-  schema.real("phantom.junction_mm", 27, {15, 45}, "Diameter of the sinotubular junction");
+  schema.real("phantom.lvot_mm", 23, {12, 40}, "Diameter of the outflow tract");
+  schema.real("phantom.sinus_mm", 31.5, {18, 50}, "Largest diameter of the sinuses");
+  schema.real("phantom.junction_mm", 26.5, {15, 45}, "Diameter of the sinotubular junction");
   schema.real("phantom.junction_height_mm", 20, {10, 30}, "Height of the junction above the annulus");
-  schema.real("phantom.ascending_mm", 31, {15, 50}, "Diameter of the ascending aorta");
+  schema.real("phantom.ascending_mm", 30, {15, 50}, "Diameter of the ascending aorta");
   schema.real("phantom.bend_radius_mm", 90, {50, 1000}, "Radius of the aorta's bend");
   schema.real("phantom.orifice_mm", 9, {3, 20}, "Opening left by the stenotic leaflets");
-  schema.real("phantom.leaflet_mm", 1.2, {0.3, 3}, "Leaflet thickness");
+  schema.real("phantom.leaflet_mm", 1.6, {0.3, 3}, "Leaflet thickness");
   schema.real("phantom.commissure_rotation_deg", 20, {-180, 180}, "Angle of the first commissure");
-  schema.integer("phantom.nodules", 9, {0, 60}, "Number of calcium nodules");
-  schema.real("phantom.nodule_mm", 2.6, {0.5, 8}, "Mean diameter of the nodules");
+  schema.integer("phantom.nodules", 12, {0, 60}, "Number of calcium nodules");
+  schema.real("phantom.nodule_mm", 3.2, {0.5, 8}, "Mean diameter of the nodules");
   schema.reals("phantom.centre_mm", {6, -12, 20}, 3, unlimited(), "Annulus centre in the scanner (LPS)");
   schema.reals("phantom.axis", {-0.35, -0.25, 0.9}, 3, unlimited(),
                "Direction from ventricle to aorta (LPS)");

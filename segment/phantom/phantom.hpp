@@ -14,19 +14,19 @@
 namespace valsalva::segment {
 
 struct PhantomShape {
-  double annulus_mm = 24;  ///< mean diameter
-  double ovality = 0.85;   ///< least over greatest diameter of the annulus
-  double lvot_mm = 24.5;
-  double sinus_mm = 33;  ///< largest mean diameter
-  double junction_mm = 27;
+  double annulus_mm = 22.5;  ///< mean diameter
+  double ovality = 0.85;     ///< least over greatest diameter of the annulus
+  double lvot_mm = 23;
+  double sinus_mm = 31.5;  ///< largest mean diameter
+  double junction_mm = 26.5;
   double junction_height_mm = 20;
-  double ascending_mm = 31;
+  double ascending_mm = 30;
   double bend_radius_mm = 90;
   double orifice_mm = 9;    ///< opening left by the stenotic leaflets
-  double leaflet_mm = 1.2;  ///< thickness
+  double leaflet_mm = 1.6;  ///< thickness
   double commissure_rotation_deg = 20;
-  int nodules = 9;
-  double nodule_mm = 2.6;  ///< mean diameter
+  int nodules = 12;
+  double nodule_mm = 3.2;  ///< mean diameter
 };
 
 struct PhantomScan {
