@@ -126,7 +126,6 @@ Simulation::Simulation(Device device, const Parameters& p)
           "damping of " + body.name, body.shell->mesh().triangles, body.shell->lumped_mass(p.tissue_density),
           system_.body(body.name).offset, p.tissue_damping_per_s));
   structure::IntegratorSettings settings;
-  settings.safety = 0.6;  // the fibres' exponential stiffens between two mass scalings
   settings.step_s = p.step_s;
   settings.scaling_interval = p.scaling_interval;
   settings.damping_per_s = p.damping_per_s;
