@@ -140,7 +140,7 @@ Inputs read_inputs(const std::filesystem::path& path, const Parameters& p) {
   in.low_z_mm = cuts.front();
   in.high_z_mm = cuts.back();
   const std::string moving = p.device ? "leaflets" : "native_leaflets";
-  if (p.device || file.has_mesh(moving)) in.leaflets = read_leaflets(file, moving, p.tissue.stiffness_factor);
+  if (file.has_mesh(moving)) in.leaflets = read_leaflets(file, moving, p.tissue.stiffness_factor);
   if (!p.device) return in;
 
   const state::Mesh& frame = file.mesh("frame");

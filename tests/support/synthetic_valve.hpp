@@ -5,6 +5,7 @@
 // ends in straight posts. The free edge bows inwards to `gap_mm` from the axis.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -23,6 +24,7 @@ struct SyntheticValve {
   double spacing_mm = 0.5;
   double thickness_mm = 0.34;
   double base_z_mm = 0;
+  double turn_rad = 0;
 };
 
 struct ValveMesh {
@@ -40,7 +42,7 @@ inline ValveMesh synthetic_valve(const SyntheticValve& v) {
   const int columns = 2 * static_cast<int>(std::lround(0.6 * (2 * r + v.height_mm) / v.spacing_mm));
   ValveMesh mesh;
   for (int leaf = 0; leaf < 3; ++leaf) {
-    const double turn = 2 * half * leaf;
+    const double turn = v.turn_rad + 2 * half * leaf;
     auto turned = [&](double x, double y, double z) {
       return Vec3(std::cos(turn) * x - std::sin(turn) * y, std::sin(turn) * x + std::cos(turn) * y,
                   v.base_z_mm + z);
