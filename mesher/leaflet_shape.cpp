@@ -18,6 +18,7 @@ constexpr double clearance_fraction =
     0.12;                                  ///< largest distance to the wall where the edge follows it, of R_c
 constexpr double least_mid_radius = 0.15;  ///< of R_c
 constexpr double largest_mid_radius = 0.75;  ///< of R_c
+constexpr double edge_rounding = 0.05;       ///< width of the Gaussian that rounds the free edge, of 2 R_n
 constexpr int edge_samples = 400;
 
 /// 0 at 0, 1 from 1 on; twice continuously differentiable.
@@ -88,18 +89,51 @@ Vec3 LeafletShape::attachment(double u) const {
 
 Vec3 LeafletShape::free_edge(double u) const {
   if (std::abs(u) >= 1) return attachment(u);
-  const auto [radius, z] = free_edge_at(u);
-  return root_.position(angle(u), radius, z);
+  const auto after = std::upper_bound(edge_u_.begin(), edge_u_.end(), u) - edge_u_.begin();
+  const double f = (u - edge_u_[after - 1]) / (edge_u_[after] - edge_u_[after - 1]);
+  return edge_[after - 1] + f * (edge_[after] - edge_[after - 1]);
+}
+
+/// The course of free_edge_at in equal steps, rounded by a Gaussian along the arc with fixed ends.
+void LeafletShape::trace_free_edge() {
+  constexpr int raw_samples = 1200;
+  std::vector<double> u, arc{0};
+  Points raw;
+  for (int i = 0; i <= raw_samples; ++i) {
+    u.push_back(-1 + 2.0 * i / raw_samples);
+    const auto [radius, z] = free_edge_at(u.back());
+    raw.push_back(i == 0 || i == raw_samples ? attachment(u.back())
+                                             : root_.position(angle(u.back()), radius, z));
+    if (i > 0) arc.push_back(arc.back() + (raw[i] - raw[i - 1]).norm());
+  }
+  edge_.assign(1, raw.front());
+  edge_u_.assign(1, -1.0);
+  for (int k = 1, i = 1; k < edge_samples; ++k) {
+    const double target = arc.back() * k / edge_samples;
+    while (arc[i] < target) ++i;
+    const double f = (target - arc[i - 1]) / (arc[i] - arc[i - 1]);
+    edge_.push_back(raw[i - 1] + f * (raw[i] - raw[i - 1]));
+    edge_u_.push_back(u[i - 1] + f * (u[i] - u[i - 1]));
+  }
+  edge_.push_back(raw.back());
+  edge_u_.push_back(1);
+
+  const double step = arc.back() / edge_samples;
+  const double rounding = edge_rounding * 2 * nadir_radius_;
+  const int sweeps = static_cast<int>(2 * rounding * rounding / (step * step));
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    Vec3 before = edge_.front();
+    for (int k = 1; k < edge_samples; ++k) {
+      const Vec3 here = edge_[k];
+      edge_[k] = 0.25 * (before + 2 * here + edge_[k + 1]);
+      before = here;
+    }
+  }
 }
 
 double LeafletShape::free_edge_length() const {
   double sum = 0;
-  Vec3 previous = free_edge(-1);
-  for (int i = 1; i <= edge_samples; ++i) {
-    const Vec3 next = free_edge(-1 + 2.0 * i / edge_samples);
-    sum += (next - previous).norm();
-    previous = next;
-  }
+  for (std::size_t i = 1; i < edge_.size(); ++i) sum += (edge_[i] - edge_[i - 1]).norm();
   return sum;
 }
 
@@ -107,8 +141,9 @@ double LeafletShape::free_edge_length() const {
 void LeafletShape::fit_mid_radius() {
   double low = least_mid_radius * commissure_radius_;
   double high = std::min(largest_mid_radius * commissure_radius_, 0.95 * nadir_radius_);
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 25; ++i) {
     mid_radius_ = 0.5 * (low + high);
+    trace_free_edge();
     (free_edge_length() > sizes_.free_edge_mm ? low : high) = mid_radius_;
   }
 }

@@ -42,7 +42,6 @@ struct LeafletProportions {
 };
 
 struct LeafletSizes {
-  double nadir_z_mm = 0;
   double commissure_z_mm = 0;
   double free_edge_mm = 0;
   double length_mm = 0;  ///< nadir to mid free edge
@@ -66,8 +65,8 @@ class LeafletShape {
   Vec3 point(double u, double t) const { return (1 - t) * attachment(u) + t * free_edge(u); }
 
   const LeafletSizes& sizes() const { return sizes_; }
-  /// Radius of the free edge at mid leaflet.
-  double mid_radius_mm() const { return mid_radius_; }
+  /// Distance of the middle of the free edge from the nadir.
+  double straight_length_mm() const { return (free_edge(0) - attachment(0)).norm(); }
   /// Dense triangles of the surface, normal towards the aorta: `across` columns, `along` rows.
   geometry::TriMesh sampled(int across, int along) const;
 
@@ -79,6 +78,7 @@ class LeafletShape {
   Cylindrical attachment_at(double u) const;
   Cylindrical free_edge_at(double u) const;
   double angle(double u) const { return middle_ + u * half_width_; }
+  void trace_free_edge();
   double free_edge_length() const;
   void fit_mid_radius();
 
@@ -88,6 +88,8 @@ class LeafletShape {
   double middle_ = 0, half_width_ = 0;
   double nadir_radius_ = 0, commissure_radius_ = 0;
   double mid_radius_ = 0;
+  std::vector<double> edge_u_;  ///< the rounded free edge, in equal steps
+  Points edge_;
 };
 
 }  // namespace valsalva::mesher

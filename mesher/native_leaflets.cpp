@@ -127,7 +127,8 @@ NativeValve fit_native_valve(const Root& root, const LeafletProportions& proport
     const LeafletShape shape(root, proportions, angles[k], to);
     const Leaflet leaflet = mesh_leaflet(shape, proportions, thickness, edge_mm, lumen);
     valve.sizes[k] = shape.sizes();
-    valve.mid_radius_mm[k] = shape.mid_radius_mm();
+    valve.length_mm[k] = shape.straight_length_mm();
+    valve.mid_radius_mm[k] = root.radius_of(shape.free_edge(0));
     valve.free_edge_mm[k] = leaflet.free_edge_mm;
     valve.gauss_curvature_sr[k] = geometry::total_gauss_curvature(leaflet.mesh);
 

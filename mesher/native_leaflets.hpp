@@ -28,8 +28,9 @@ struct NativeValve {
   std::vector<double> thickness_mm;  ///< a node
   FibreField fibres;
   std::array<LeafletSizes, 3> sizes;
-  std::array<double, 3> free_edge_mm;  ///< measured on the mesh
-  std::array<double, 3> mid_radius_mm;
+  std::array<double, 3> free_edge_mm;   ///< measured on the mesh
+  std::array<double, 3> length_mm;      ///< nadir to mid free edge
+  std::array<double, 3> mid_radius_mm;  ///< distance of the middle of the free edge from the axis
   std::array<double, 3> gauss_curvature_sr;
   double least_clearance_mm = 0;   ///< of nodes further than 2 mm from the attachment, to the wall
   double attachment_error_mm = 0;  ///< largest |phi - inset| of attached nodes

@@ -91,10 +91,4 @@ double Root::wall_radius(double angle, double z) const {
   return distance_to_wall(lumen_, base_ + z * slope_, ray(angle));
 }
 
-double Root::mean_radius(double z) const {
-  double sum = 0;
-  for (int i = 0; i < rays; ++i) sum += wall_radius(2 * std::numbers::pi * i / rays, z);
-  return sum / rays;
-}
-
 }  // namespace valsalva::mesher

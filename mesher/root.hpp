@@ -15,11 +15,10 @@ class Root {
   Root(const geometry::GridSdf& lumen, double low_z_mm, double high_z_mm);
 
   Vec3 position(double angle_rad, double radius_mm, double z_mm) const;
+  /// Distance from the axis, at the same z.
+  double radius_of(const Vec3& x) const { return (x - base_ - x.z() * slope_).norm(); }
   /// First wall along the ray from the axis. InputError when there is none within 60 mm.
   double wall_radius(double angle_rad, double z_mm) const;
-  /// Mean of wall_radius over the circle at this height.
-  double mean_radius(double z_mm) const;
-  double level_set(const Vec3& x) const { return lumen_.value(x); }
 
  private:
   const geometry::GridSdf& lumen_;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -62,6 +63,51 @@ VertexFlags corners_of(CgalMesh& mesh, const EdgeFlags& kept, double corner_angl
   return corners;
 }
 
+/// The kept lines as they were given.
+class KeptLines {
+ public:
+  KeptLines(const CgalMesh& mesh, const EdgeFlags& kept) {
+    for (const auto edge : mesh.edges())
+      if (kept[edge])
+        segments_.push_back(
+            {from_cgal(mesh.point(mesh.vertex(edge, 0))), from_cgal(mesh.point(mesh.vertex(edge, 1)))});
+  }
+  bool none() const { return segments_.empty(); }
+  Vec3 nearest(const Vec3& x) const {
+    Vec3 best = x;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b] : segments_) {
+      const double f = std::clamp((x - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-30), 0.0, 1.0);
+      const Vec3 candidate = a + f * (b - a);
+      if ((candidate - x).squaredNorm() < least) {
+        least = (candidate - x).squaredNorm();
+        best = candidate;
+      }
+    }
+    return best;
+  }
+
+ private:
+  std::vector<std::array<Vec3, 2>> segments_;
+};
+
+/// Evens out the spacing of vertices along the kept lines, without leaving them.
+void slide_along(CgalMesh& mesh, const KeptLines& lines, const EdgeFlags& kept, const VertexFlags& corners) {
+  constexpr int sweeps = 6;
+  std::map<CgalMesh::Vertex_index, std::vector<CgalMesh::Vertex_index>> along;
+  for (const auto edge : mesh.edges()) {
+    if (!kept[edge]) continue;
+    along[mesh.vertex(edge, 0)].push_back(mesh.vertex(edge, 1));
+    along[mesh.vertex(edge, 1)].push_back(mesh.vertex(edge, 0));
+  }
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (const auto& [vertex, ends] : along) {
+      if (corners[vertex] || ends.size() != 2) continue;
+      const Vec3 middle = 0.5 * (from_cgal(mesh.point(ends[0])) + from_cgal(mesh.point(ends[1])));
+      mesh.point(vertex) = to_cgal(lines.nearest(middle));
+    }
+}
+
 }  // namespace
 
 TriMesh remesh(const TriMesh& input, const RemeshOptions& options) {
@@ -69,13 +115,18 @@ TriMesh remesh(const TriMesh& input, const RemeshOptions& options) {
   CgalMesh mesh = to_cgal(input);
   const auto kept = kept_edges(mesh, options.feature_angle_deg);
   const auto corners = corners_of(mesh, kept, options.corner_angle_deg);
-  pmp::isotropic_remeshing(mesh.faces(), options.edge_mm, mesh,
-                           pmp::parameters::number_of_iterations(options.iterations)
-                               .number_of_relaxation_steps(3)
-                               .edge_is_constrained_map(kept)
-                               .vertex_is_constrained_map(corners)
-                               .relax_constraints(false)
-                               .protect_constraints(options.protect_borders));
+  const KeptLines lines(mesh, kept);
+  const int rounds = lines.none() || options.protect_borders ? 1 : 3;
+  for (int round = 0; round < rounds; ++round) {
+    if (round > 0) slide_along(mesh, lines, kept, corners);
+    pmp::isotropic_remeshing(mesh.faces(), options.edge_mm, mesh,
+                             pmp::parameters::number_of_iterations((options.iterations + rounds - 1) / rounds)
+                                 .number_of_relaxation_steps(3)
+                                 .edge_is_constrained_map(kept)
+                                 .vertex_is_constrained_map(corners)
+                                 .relax_constraints(false)
+                                 .protect_constraints(options.protect_borders));
+  }
   return from_cgal(mesh);
 }
 

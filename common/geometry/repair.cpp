@@ -68,6 +68,14 @@ TriMesh without_splinters(const TriMesh& mesh, const RepairLimits& limits, const
   return pieces.front();
 }
 
+std::set<Edge> edges_of(const TriMesh& mesh) {
+  std::set<Edge> edges;
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k)
+      edges.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+  return edges;
+}
+
 void close_holes(TriMesh& mesh, const RepairLimits& limits, const std::string& name, Actions& actions) {
   for (const auto& loop : border_loops(mesh)) {
     double perimeter = 0;
@@ -82,7 +90,10 @@ void close_holes(TriMesh& mesh, const RepairLimits& limits, const std::string& n
           "allow it by "
           "mesh.max_hole_perimeter_mm (now {:.1f})",
           name, perimeter, loop.size(), text_of(centre), limits.max_hole_perimeter_mm);
-    const auto patch = filled_loop(mesh.points, loop);
+    const auto patch = filled_loop(mesh.points, loop, edges_of(mesh));
+    if (patch.empty())
+      throw InputError("{}: the hole of {:.1f} mm perimeter around {} could not be closed: close it by hand",
+                       name, perimeter, text_of(centre));
     mesh.triangles.insert(mesh.triangles.end(), patch.begin(), patch.end());
     actions.push_back(fmt::format("hole of {:.2f} mm perimeter around {} closed with {} triangles", perimeter,
                                   text_of(centre), patch.size()));
@@ -126,7 +137,7 @@ TriMesh without_self_intersections(const TriMesh& mesh, const RepairLimits& limi
       close_holes(trial, limits, name, unused);
     } catch (const InputError& error) {
       reason = error.what();
-      break;
+      continue;
     }
     const double change = std::abs(std::abs(enclosed_volume(trial)) / before - 1);
     reason = fmt::format("cutting it out changes the volume by {:.1f} % or leaves others", 100 * change);

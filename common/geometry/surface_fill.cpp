@@ -1,6 +1,7 @@
 #include "geometry/surface_fill.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 
 namespace valsalva::geometry {
@@ -15,7 +16,8 @@ double cost(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-std::vector<Triangle> filled_loop(const Points& points, const std::vector<int>& loop) {
+std::vector<Triangle> filled_loop(const Points& points, const std::vector<int>& loop,
+                                  const std::set<Edge>& taken) {
   const int n = static_cast<int>(loop.size());
   if (n < 3) return {};
   const auto at = [&](int i) -> const Vec3& { return points[loop[i]]; };
@@ -26,6 +28,7 @@ std::vector<Triangle> filled_loop(const Points& points, const std::vector<int>& 
     for (int i = 0; i + span < n; ++i) {
       const int j = i + span;
       best[i][j] = std::numeric_limits<double>::infinity();
+      if (span < n - 1 && taken.count({std::min(loop[i], loop[j]), std::max(loop[i], loop[j])})) continue;
       for (int k = i + 1; k < j; ++k) {
         const double total = best[i][k] + best[k][j] + cost(at(i), at(k), at(j));
         if (total < best[i][j]) {
@@ -34,6 +37,7 @@ std::vector<Triangle> filled_loop(const Points& points, const std::vector<int>& 
         }
       }
     }
+  if (apex[0][n - 1] < 0) return {};
   std::vector<Triangle> triangles;
   std::vector<Edge> open{{0, n - 1}};
   while (!open.empty()) {

@@ -3,6 +3,7 @@
 // polygon this is a valid triangulation of it.
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "geometry/mesh.hpp"
@@ -11,6 +12,8 @@ namespace valsalva::geometry {
 
 /// loop: vertex numbers in the order of a border (border_loops); the triangles run against it, so that they
 /// close the surface with the right orientation. No vertices are added.
-std::vector<Triangle> filled_loop(const Points& points, const std::vector<int>& loop);
+/// taken: edges (lower vertex first) that may not appear as diagonals. Empty when there is no triangulation.
+std::vector<Triangle> filled_loop(const Points& points, const std::vector<int>& loop,
+                                  const std::set<Edge>& taken = {});
 
 }  // namespace valsalva::geometry

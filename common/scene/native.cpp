@@ -14,10 +14,6 @@ void declare_native(Schema& schema) {
       "The families run at plus and minus this angle to the commissure-to-commissure direction (same table)");
   schema.real("native.stenosis_factor", 1, {1, 1e5},
               "Multiplies C10; 1000 is the severe stenosis of Brown et al. 2022");
-  schema.real("native.fusion_fraction", 0, {0, 0.6},
-              "Part of each half free edge, from the commissure, that is fused with its neighbour");
-  schema.integer("native.fused_commissures", 0, {0, 3}, "How many commissures are fused");
-
   schema.real("native.belly_thickness_mm", 0.4, {0.05, 3}, "Thickness of the belly (Brown et al. 2022)");
   schema.real("native.nodule_thickness_mm", 0.92, {0.05, 4},
               "Thickness at the nodules of Arantius, mid free edge (Brown et al. 2022)");
