@@ -2,25 +2,25 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace valsalva::contact {
 namespace {
 
-Nearest finish(const Vec3& difference, const std::array<double, 4>& weight, const Vec3& fallback) {
-  Nearest result;
-  result.weight = weight;
-  result.distance = difference.norm();
-  if (result.distance > 0) {
-    result.direction = difference / result.distance;
-  } else {
-    const double length = fallback.norm();
-    result.direction = length > 0 ? Vec3(fallback / length) : Vec3(Vec3::UnitZ());
+inline Nearest finish(const Vec3& difference, const std::array<double, 4>& weight, const Vec3& side_a,
+                      const Vec3& side_b) {
+  const double squared = difference.squaredNorm();
+  if (squared > 0) {
+    const double distance = std::sqrt(squared);
+    return {distance, difference / distance, weight};
   }
-  return result;
+  const Vec3 normal = side_a.cross(side_b);  // features that meet: any unit vector across both
+  const double length = normal.norm();
+  return {0, length > 0 ? Vec3(normal / length) : Vec3(Vec3::UnitZ()), weight};
 }
 
 /// Barycentric coordinates of the triangle's point nearest to p.
-std::array<double, 3> nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+inline std::array<double, 3> nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
@@ -53,10 +53,7 @@ std::array<double, 3> nearest_on_triangle(const Vec3& p, const Vec3& a, const Ve
 
 Nearest point_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto u = nearest_on_triangle(p, a, b, c);
-  const Vec3 difference = p - (u[0] * a + u[1] * b + u[2] * c);
-  Nearest result = finish(difference, {1, -u[0], -u[1], -u[2]}, Vec3::Zero());
-  if (result.distance == 0) result = finish(difference, result.weight, (b - a).cross(c - a));
-  return result;
+  return finish(p - (u[0] * a + u[1] * b + u[2] * c), {1, -u[0], -u[1], -u[2]}, b - a, c - a);
 }
 
 Nearest edge_edge(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
@@ -73,10 +70,7 @@ Nearest edge_edge(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1
     t = 1;
     s = std::clamp((b - c) / a, 0.0, 1.0);
   }
-  const Vec3 difference = (a0 + s * da) - (b0 + t * db);
-  Nearest result = finish(difference, {1 - s, s, t - 1, -t}, Vec3::Zero());
-  if (result.distance == 0) result = finish(difference, result.weight, da.cross(db));
-  return result;
+  return finish((a0 + s * da) - (b0 + t * db), {1 - s, s, t - 1, -t}, da, db);
 }
 
 }  // namespace valsalva::contact

@@ -12,7 +12,7 @@ void declare_crimp(Schema& schema) {
   schema.real("crimp.settle_ms", 20, {0, 500}, "At most this long the device rests in the closed crimper");
   schema.real("crimp.settled_energy_ratio", 1e-4, positive(),
               "Rest is over when kinetic energy falls below this share of internal energy");
-  schema.real("crimp.step_us", {2, 1.5, 1, 0.7}, positive(), "Time step; masses are scaled to it");
+  schema.real("crimp.step_us", {1.6, 1.2, 0.8, 0.6}, positive(), "Time step; masses are scaled to it");
   schema.integer("crimp.scaling_interval", 5, {1, 1000}, "Steps between new mass scalings");
   schema.real("crimp.damping_per_s", 100, not_negative(),
               "Mass-proportional damping while closing (assumed)");
@@ -21,9 +21,9 @@ void declare_crimp(Schema& schema) {
       "crimp.tissue_damping_per_s", 10000, not_negative(),
       "Rate of the dashpots along the edges of tissue triangles: takes out ringing between nodes (assumed)");
   schema.real(
-      "crimp.crimper_stiffness_kPa_per_mm", 200000, positive(),
+      "crimp.crimper_stiffness_kPa_per_mm", 1000000, positive(),
       "Pressure of the crimper per overlap on struts: sets the overlap, not the crimper's compliance");
-  schema.real("crimp.crimper_tissue_stiffness_kPa_per_mm", 15000, positive(),
+  schema.real("crimp.crimper_tissue_stiffness_kPa_per_mm", 60000, positive(),
               "The same on tissue: light nodes chatter on a stiffer crimper");
   schema.real("crimp.crimper_friction", 0, {0, 2},
               "Coulomb friction between device and crimper; 0: the sleeve slides freely");
