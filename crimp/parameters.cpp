@@ -31,6 +31,7 @@ Parameters read_parameters(const Case& scene) {
   p.law = scene.text("contact.law") == "barrier" ? contact::Law::barrier : contact::Law::penalty;
   p.candidates = {scene.real("contact.modulus_kPa") * units::pa_per_kPa, scene.real("contact.rest_factor"),
                   scene.real("contact.wide_skin_mm"), scene.real("contact.near_skin_mm")};
+  p.strut_modulus_Pa = scene.real("contact.strut_modulus_kPa") * units::pa_per_kPa;
   p.thickness_fraction = scene.real("contact.tissue_compressed_thickness_fraction");
   return p;
 }

@@ -28,6 +28,7 @@ struct Parameters {
 
   contact::Law law = contact::Law::barrier;
   contact::CandidateParameters candidates;
+  double strut_modulus_Pa = 0;
   double thickness_fraction = 1;
 };
 

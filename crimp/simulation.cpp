@@ -106,6 +106,8 @@ Simulation::Simulation(Device device, const Parameters& p)
   auto terms = elastic_terms(device_, p, system_);
   bodies_ = std::make_shared<contact::BodyContact>(
       contact::Candidates(collision_mesh(device_, system_, p.thickness_fraction), p.candidates), p.law);
+  const contact::BodyPairSettings with_struts{true, 0, p.strut_modulus_Pa};
+  for (const auto& body : system_.bodies()) bodies_->candidates().set_pair("frame", body.name, with_struts);
   const auto motion = [this](double t) {
     return contact::ToolPosition{crimper_.radius_mm(t), -far_mm, far_mm, 0};
   };

@@ -8,6 +8,7 @@ void declare_contact(Schema& schema) {
                 "Pressure over distance: a barrier grows without bound, a penalty is bounded (to compare)");
   schema.real("contact.modulus_kPa", 1000, positive(),
               "Stiffness scale of the law; the barrier gives 1.2 times this at half the contact distance");
+  schema.real("contact.strut_modulus_kPa", 10000, positive(), "The same where a strut takes part");
   schema.real(
       "contact.tissue_compressed_thickness_fraction", 0.4, {0.05, 1},
       "Thickness of tissue in contact over its thickness at rest: pericardium is squeezed and gives off "

@@ -23,7 +23,7 @@ void declare_crimp(Schema& schema) {
   schema.real(
       "crimp.crimper_stiffness_kPa_per_mm", 1000000, positive(),
       "Pressure of the crimper per overlap on struts: sets the overlap, not the crimper's compliance");
-  schema.real("crimp.crimper_tissue_stiffness_kPa_per_mm", 60000, positive(),
+  schema.real("crimp.crimper_tissue_stiffness_kPa_per_mm", 200000, positive(),
               "The same on tissue: light nodes chatter on a stiffer crimper");
   schema.real("crimp.crimper_friction", 0, {0, 2},
               "Coulomb friction between device and crimper; 0: the sleeve slides freely");
