@@ -130,6 +130,22 @@ void check(herr_t result, const std::string& what) {
 Handle create_file(const std::string& path) {
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "create"};
 }
+Handle create_file_in_memory() {
+  constexpr std::size_t growth = 1u << 24;
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "create");
+  check(H5Pset_fapl_core(access, growth, /*backing_store=*/0), "create");
+  return {H5Fcreate("state", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "create"};
+}
+
+std::string image_of(hid_t file) {
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL), "flush");
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) throw Hdf5Failure("image");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size) throw Hdf5Failure("image");
+  return bytes;
+}
+
 Handle open_file(const std::string& path) {
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open"};
 }

@@ -49,6 +49,10 @@ class Quiet {
 void check(herr_t result, const std::string& what);
 
 Handle create_file(const std::string& path);
+/// A file that lives in memory only; image_of gives the bytes that a file on disk would have. HDF5 cannot let
+/// go of a file that it failed to flush (it crashes at exit), so what may meet a full disk is not left to it.
+Handle create_file_in_memory();
+std::string image_of(hid_t file);
 Handle open_file(const std::string& path);
 Handle create_group(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);

@@ -1,12 +1,8 @@
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 
 #include "core/errors.hpp"
 #include "core/provenance.hpp"
+#include "core/run_folder.hpp"
 #include "state/hdf5.hpp"
 #include "state/schema.hpp"
 #include "state/state.hpp"
@@ -99,54 +95,34 @@ void write_header(hid_t file, const State& state) {
   hdf5::write_attribute(file, "parents", parents);
 }
 
-void write_content(const std::string& path, const State& state) {
-  hdf5::Handle file = hdf5::create_file(path);
+std::string content_of(const State& state) {
+  const hdf5::Handle file = hdf5::create_file_in_memory();
   write_header(file, state);
-  {
-    const hdf5::Handle meshes = hdf5::create_group(file, "meshes");
-    for (const auto& [name, mesh] : state.meshes) write_mesh(meshes, name, mesh);
-    for (const auto& [name, image] : state.images) write_image(meshes, name, image);
-    const hdf5::Handle restart = hdf5::create_group(file, "restart");
-    for (const auto& [name, array] : state.restart) hdf5::write_array(restart, name, array);
-    for (const auto& [name, text] : state.texts) hdf5::write_bytes(restart, name, {text.begin(), text.end()});
-  }
-  hdf5::check(H5Fflush(file, H5F_SCOPE_GLOBAL), "flush");
+  const hdf5::Handle meshes = hdf5::create_group(file, "meshes");
+  for (const auto& [name, mesh] : state.meshes) write_mesh(meshes, name, mesh);
+  for (const auto& [name, image] : state.images) write_image(meshes, name, image);
+  const hdf5::Handle restart = hdf5::create_group(file, "restart");
+  for (const auto& [name, array] : state.restart) hdf5::write_array(restart, name, array);
+  for (const auto& [name, text] : state.texts) hdf5::write_bytes(restart, name, {text.begin(), text.end()});
   hdf5::write_attribute(file, "complete", std::int64_t{1});
-  hdf5::check(H5Fflush(file, H5F_SCOPE_GLOBAL), "flush");
-  file.close("close");
-}
-
-bool sync(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY);
-  if (file < 0) return false;
-  const bool done = ::fsync(file) == 0;
-  return (::close(file) == 0) && done;
+  return hdf5::image_of(file);
 }
 
 }  // namespace
 
 void write(const fs::path& path, const State& state) {
   require_finite(state);
-  const fs::path part = path.string() + ".part";
   const hdf5::Quiet quiet;
-  std::string what;
+  std::string bytes;
   try {
-    write_content(part.string(), state);
-    if (!sync(part))
-      what = "fsync";
-    else if (::rename(part.c_str(), path.c_str()) != 0)
-      what = "rename";
+    bytes = content_of(state);
   } catch (const hdf5::Hdf5Failure& failure) {
-    what = failure.what();
+    throw EnvironmentError(
+        "{}: the state could not be composed in memory (at '{}'); use a larger machine or a "
+        "coarser fidelity",
+        path.string(), failure.what());
   }
-  if (what.empty()) return;
-  const int reason = errno;
-  std::error_code ignored;
-  fs::remove(part, ignored);
-  throw EnvironmentError(
-      "{}: the state could not be written ({}: {}); free disk space or change permissions, then "
-      "continue with --resume",
-      path.string(), what, std::strerror(reason));
+  write_atomically(path, bytes);
 }
 
 }  // namespace valsalva::state

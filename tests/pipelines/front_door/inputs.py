@@ -32,6 +32,7 @@ def stent_state(folder, binaries):
 def make_inputs(folder, binaries):
     # h5py of Debian; the programs' own test machine has it through python3-vtk9's packages or python3-h5py.
     import h5py
+    import numpy
 
     paths = {"folder": folder}
 
@@ -55,6 +56,7 @@ def make_inputs(folder, binaries):
     paths["other_h5"] = folder / "other.h5"
 
     good = stent_state(folder, binaries).read_bytes()
+    file("stent_state", "stent_state.h5", good)
     file("cut_state", "cut_state.h5", good[: len(good) // 2])
 
     def changed(key, change):
@@ -66,7 +68,7 @@ def make_inputs(folder, binaries):
         return lambda state: state.attrs.modify(name, value)
 
     def rename_stage(state):
-        state.attrs["stage"] = b"segment"
+        state.attrs["stage"] = numpy.bytes_("segment")
 
     def remove_frame(state):
         del state["meshes/frame"]

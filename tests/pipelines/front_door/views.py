@@ -12,7 +12,7 @@ from pathlib import Path
 
 from inputs import stent_state
 
-BIN = Path(sys.argv[1])
+BIN = Path(sys.argv[1]).resolve()
 
 
 def main():

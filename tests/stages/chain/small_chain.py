@@ -15,7 +15,7 @@ from pathlib import Path
 
 from states import differences, newest
 
-BIN = Path(sys.argv[1])
+BIN = Path(sys.argv[1]).resolve()
 CASE = Path(__file__).with_name("small.toml")
 STAGES = ["segment", "mesher", "stent", "crimp", "deploy", "cycle"]
 

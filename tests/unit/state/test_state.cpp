@@ -94,7 +94,7 @@ TEST(State, AValueThatIsNotFiniteIsNeverWritten) {
 }
 
 TEST(State, AFullDiskIsAnEnvironmentError) {
-  expect_error(ExitCode::environment, {"could not be written"}, [] { write("/proc/s.h5", sample()); });
+  expect_error(ExitCode::environment, {"failed", "--resume"}, [] { write("/proc/s.h5", sample()); });
 }
 
 TEST(State, WhatIsMissingIsNamedWithItsStage) {
