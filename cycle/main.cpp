@@ -83,11 +83,11 @@ void run(StageContext& context) {
 
 Estimate estimate(const Case& scene, int ranks) {
   const Parameters p = read_parameters(scene);
-  // Step and cost measured on straight-tube valves (docs/cycle.md): mean step about 3e-5 h^1.4, 0.09
-  // microseconds a cell and step, leaflets as much again at h = 1 mm.
+  // docs/cycle.md: mean step of a beat about 3e-5 h^1.4, one core 0.06 microseconds a cell and step, and
+  // 4.6 ms for leaflets at h = 1 mm (their nodes are as 1 / h^2).
   const double volume = 40.0 * 40 * 60, cells = volume / std::pow(p.h, 3);
   const double step_s = 3e-5 * std::pow(p.h, 1.4);
-  const double per_step = 0.09e-6 * cells + 1.1e-6 * 8000 / (p.h * p.h);
+  const double per_step = 0.06e-6 * cells + 4.6e-3 / (p.h * p.h);
   return {p.end_s / step_s * per_step / (ranks > 1 ? 1.6 : 1.0), 200 + 1.2e-3 * cells,
           "first order at walls and leaflets: orifice areas to about a cell's width all round, gradients "
           "20-40 % at "
