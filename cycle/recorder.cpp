@@ -81,11 +81,11 @@ Recorder::Recorder(const Inputs& in, const Parameters& p, coupling::ImmersedFlow
   slice_j_ = std::clamp(static_cast<int>(std::floor(-grid.origin.y() / grid.h)), 0, grid.cells[1] - 1);
   if (in.leaflets) {
     Points attached;
-    valve_z_mm_ = 1e300;
+    valve_z_mm_ = -1e300;
     for (std::size_t a = 0; a < in.leaflets->points.size(); ++a)
       if (in.leaflets->attached[a]) {
         attached.push_back(in.leaflets->points[a]);
-        valve_z_mm_ = std::min(valve_z_mm_, in.leaflets->points[a].z());
+        valve_z_mm_ = std::max(valve_z_mm_, in.leaflets->points[a].z());
       }
     outline_ = metrics::outline_of(attached, orifice_pixel_mm);
   }

@@ -19,7 +19,8 @@ class Recorder {
   const History& history() const { return history_; }
   /// 0 during the initialisation, then 1, 2, ...
   int beat_of(double time_s) const;
-  /// The jet's largest velocity is looked for above this height.
+  /// The jet's largest velocity is looked for above this height, the top of the attached edge: below it, thin
+  /// leak jets between closing leaflets are faster.
   double valve_z_mm() const { return valve_z_mm_; }
   double valve_radius_mm() const { return outline_ ? outline_->largest_radius() : 0; }
   double gap_area_mm2() const { return gap_ ? gap_->area_mm2() : 0; }
