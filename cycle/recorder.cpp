@@ -155,8 +155,10 @@ void Recorder::add_row(double time_s, const coupling::ImmersedStep& step, const 
   }
   double force = pull;
   for (const int body : device_) force += flow.solids().force_on(body).z();
-  slide_mm_ += std::copysign(std::max(0.0, std::abs(force) - in_.friction_capacity_uN), force) /
-               p_.anchor_drag * (time_s - row_time_s_);
+  // The closing of the valve from rest is not the device's history.
+  if (beat_of(time_s) > 0)
+    slide_mm_ += std::copysign(std::max(0.0, std::abs(force) - in_.friction_capacity_uN), force) /
+                 p_.anchor_drag * (time_s - row_time_s_);
   row_time_s_ = time_s;
   const double jet = metrics::largest_axial_velocity(flow, flow.plane_at(valve_z_mm_), high_plane_);
   std::vector<double> row{time_s,
