@@ -9,14 +9,14 @@
 namespace valsalva::mesher {
 namespace {
 
-constexpr double crown_width_power = 2.5;
-constexpr double crown_height_power = 2.2;
-constexpr double blunt_tip = 0.12;   ///< |u| within which the free edge keeps its least radius
-constexpr double inward_turn = 0.9;  ///< |u| beyond which it follows the wall
-constexpr double wedge_deg = 14;     ///< angle between free edge and wall at a commissure
+constexpr double crown_width_power = 2.0;
+constexpr double crown_height_power = 2.7;
+constexpr double blunt_tip = 0.12;    ///< |u| within which the free edge keeps its least radius
+constexpr double inward_turn = 0.75;  ///< |u| beyond which it follows the wall
+constexpr double wedge_deg = 14;      ///< angle between free edge and wall at a commissure
 constexpr double clearance_fraction =
     0.12;                                  ///< largest distance to the wall where the edge follows it, of R_c
-constexpr double least_mid_radius = 0.15;  ///< of R_c
+constexpr double least_mid_radius = 0.05;  ///< of R_c, before rounding
 constexpr double largest_mid_radius = 0.75;  ///< of R_c
 constexpr double edge_rounding = 0.05;       ///< width of the Gaussian that rounds the free edge, of 2 R_n
 constexpr int edge_samples = 400;

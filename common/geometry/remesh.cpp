@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 
+#include "geometry/quality.hpp"
 #include "geometry/surface.hpp"
 #include "geometry/surface_cgal.hpp"
 #include "geometry/surface_fill.hpp"
@@ -91,6 +92,16 @@ class KeptLines {
   std::vector<std::array<Vec3, 2>> segments_;
 };
 
+double longest_of(const CgalMesh& mesh, const EdgeFlags& kept) {
+  double longest = 0;
+  for (const auto edge : mesh.edges())
+    if (kept[edge])
+      longest = std::max(
+          longest,
+          (from_cgal(mesh.point(mesh.vertex(edge, 0))) - from_cgal(mesh.point(mesh.vertex(edge, 1)))).norm());
+  return longest;
+}
+
 /// Evens out the spacing of vertices along the kept lines, without leaving them.
 void slide_along(CgalMesh& mesh, const KeptLines& lines, const EdgeFlags& kept, const VertexFlags& corners) {
   constexpr int sweeps = 6;
@@ -108,6 +119,73 @@ void slide_along(CgalMesh& mesh, const KeptLines& lines, const EdgeFlags& kept, 
     }
 }
 
+/// Moves inner vertices of sharp triangles within the surface, towards the middle of their neighbours or in
+/// one of twelve directions, as long as the sharpest angle around them grows.
+class SharpTriangles {
+ public:
+  explicit SharpTriangles(TriMesh& mesh)
+      : mesh_(mesh),
+        around_(mesh.points.size()),
+        fixed_(mesh.points.size(), 0),
+        neighbours_(vertex_neighbours(mesh)) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+      for (int node : mesh.triangles[i]) around_[node].push_back(static_cast<int>(i));
+    for (const auto& loop : border_loops(mesh))
+      for (int node : loop) fixed_[node] = 1;
+  }
+  void improve() {
+    for (int sweep = 0; sweep < 10; ++sweep)
+      for (std::size_t i = 0; i < mesh_.points.size(); ++i)
+        if (!fixed_[i] && !around_[i].empty()) improve(static_cast<int>(i));
+  }
+
+ private:
+  double sharpest(int node) const {
+    double least = 180;
+    for (int i : around_[node]) {
+      const auto& [a, b, c] = mesh_.triangles[i];
+      least = std::min(least, triangle_min_angle_deg(mesh_.points[a], mesh_.points[b], mesh_.points[c]));
+    }
+    return least;
+  }
+  void improve(int node) {
+    double best = sharpest(node);
+    if (best > 27) return;
+    Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
+    for (int k : around_[node]) {
+      const auto& [a, b, c] = mesh_.triangles[k];
+      normal += (mesh_.points[b] - mesh_.points[a]).cross(mesh_.points[c] - mesh_.points[a]);
+    }
+    for (int other : neighbours_[node]) middle += mesh_.points[other] / double(neighbours_[node].size());
+    normal.normalize();
+    Vec3& x = mesh_.points[node];
+    const Vec3 start = x;
+    Vec3 chosen = start;
+    const auto consider = [&](const Vec3& offset) {
+      x = start + offset - offset.dot(normal) * normal;
+      const double reached = sharpest(node);
+      if (reached > best) {
+        best = reached;
+        chosen = x;
+      }
+    };
+    for (const double fraction : {1.0, 0.5}) consider(fraction * (middle - start));
+    const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+    const double radius = (mesh_.points[neighbours_[node].front()] - start).norm();
+    for (int k = 0; k < 12; ++k) {
+      const double angle = k * std::numbers::pi / 6;
+      for (const double fraction : {0.08, 0.25})
+        consider(fraction * radius * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+    x = chosen;
+  }
+
+  TriMesh& mesh_;
+  std::vector<std::vector<int>> around_;
+  std::vector<char> fixed_;
+  std::vector<std::vector<int>> neighbours_;
+};
+
 }  // namespace
 
 TriMesh remesh(const TriMesh& input, const RemeshOptions& options) {
@@ -119,15 +197,19 @@ TriMesh remesh(const TriMesh& input, const RemeshOptions& options) {
   const int rounds = lines.none() || options.protect_borders ? 1 : 3;
   for (int round = 0; round < rounds; ++round) {
     if (round > 0) slide_along(mesh, lines, kept, corners);
+    // CGAL protects only lines without edges longer than 4/3 of the target.
+    const bool even = round == rounds - 1 && round > 0 && longest_of(mesh, kept) < 1.3 * options.edge_mm;
     pmp::isotropic_remeshing(mesh.faces(), options.edge_mm, mesh,
                              pmp::parameters::number_of_iterations((options.iterations + rounds - 1) / rounds)
                                  .number_of_relaxation_steps(3)
                                  .edge_is_constrained_map(kept)
                                  .vertex_is_constrained_map(corners)
                                  .relax_constraints(false)
-                                 .protect_constraints(options.protect_borders));
+                                 .protect_constraints(options.protect_borders || even));
   }
-  return from_cgal(mesh);
+  TriMesh result = from_cgal(mesh);
+  if (options.feature_angle_deg >= 180) SharpTriangles(result).improve();
+  return result;
 }
 
 TriMesh closed_by_caps(const TriMesh& open, double edge_mm) {

@@ -14,7 +14,7 @@ std::vector<std::pair<int, int>> self_intersections(const TriMesh& mesh) {
   CGAL::Polygon_mesh_processing::self_intersections(surface, std::back_inserter(found));
   std::vector<std::pair<int, int>> pairs;
   for (const auto& [a, b] : found) {
-    const auto [low, high] = std::minmax(static_cast<int>(a.idx()), static_cast<int>(b.idx()));
+    const auto [low, high] = std::minmax({static_cast<int>(a.idx()), static_cast<int>(b.idx())});
     pairs.emplace_back(low, high);
   }
   std::sort(pairs.begin(), pairs.end());
