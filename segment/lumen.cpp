@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "calcium.hpp"
 #include "core/errors.hpp"
@@ -21,10 +22,15 @@ constexpr double margin_mm = 8;  // real data beyond the cuts, for the morpholog
 constexpr double ends_mm = 20;   // straight continuation while distances are taken, so that no end is felt
 constexpr double kept_mm = 6;    // of which so much stays in the result, on every side
 constexpr double least_upper_cut_mm = 20;
-constexpr double most_oblique = 1.6;  // area of the upper cut over that of the normal section
+constexpr double most_oblique = 1.6;   // area of the upper cut over that of the normal section
+constexpr double least_compact = 1.5;  // perimeter^2 / (4 pi area); an ellipse of 27 x 20 mm has 1.05
+constexpr double outflow_mm = 8;       // so far down the outflow tract is a tube of its own
 constexpr double widest_annulus_mm = 42, widest_section_mm2 = 2400;  // beyond any patient's
-constexpr double reach_mm = 9;  // distances are right up to here, and every radius is smaller
-constexpr double corner_mm = 2, largest_parting_mm = 8.5;
+constexpr double reach_mm = 9;      // distances are right up to here, and every radius is smaller
+constexpr double below_cut_mm = 3;  // searched below the lower cut; more would reach round the mitral leaflet
+constexpr double grid_margin_mm = 14;
+constexpr double corner_mm = 1.5;  // regained at corners and edges after the parting
+constexpr double strictness_step = 0.15, most_strict = 0.6;
 constexpr double least_upright = 0.6;  // cosine between the vessel and the axis at the upper cut
 
 double median(std::vector<double> values) {
@@ -61,7 +67,7 @@ double upper_cut(const GridSdf& lumen, double wanted, std::string& note) {
   for (const auto& p : line) {
     if (p.arc_mm > 15 && p.tangent.z() < least_upright) {
       note = fmt::format("the aorta leans by more than {:.0f} degrees from z = {:.0f} mm on",
-                         std::acos(least_upright) * 180 / 3.14159265358979, p.position.z());
+                         std::acos(least_upright) * 180 / std::numbers::pi, p.position.z());
       break;
     }
     const geometry::Plane level = geometry::Plane::at(p.position, Vec3::UnitZ());
@@ -78,78 +84,137 @@ double upper_cut(const GridSdf& lumen, double wanted, std::string& note) {
   return std::floor(reached);
 }
 
-/// What is found of the vessel at one opening radius; `leak` says what is wrong with it, empty when nothing
-/// is.
+GridSdf every_second(const GridSdf& field) {
+  GridSdf coarse;
+  coarse.origin = field.origin;
+  coarse.spacing = 2 * field.spacing;
+  for (int d = 0; d < 3; ++d) coarse.dimensions[d] = (field.dimensions[d] + 1) / 2;
+  for (int k = 0; k < field.dimensions[2]; k += 2)
+    for (int j = 0; j < field.dimensions[1]; j += 2)
+      for (int i = 0; i < field.dimensions[0]; i += 2) coarse.values.push_back(field.at(i, j, k));
+  return coarse;
+}
+
+/// The part of the grid, at full height, within `margin_mm` of the body in x and y.
+GridSdf around(const GridSdf& field, const GridSdf& body, double margin_mm) {
+  Vec3 low = Vec3::Constant(1e9), high = -low;
+  for (int k = 0; k < body.dimensions[2]; ++k)
+    for (int j = 0; j < body.dimensions[1]; ++j)
+      for (int i = 0; i < body.dimensions[0]; ++i)
+        if (body.at(i, j, k) < 0) {
+          const Vec3 x = body.origin + body.spacing * Vec3(i, j, k);
+          low = low.cwiseMin(x);
+          high = high.cwiseMax(x);
+        }
+  std::array<int, 3> first{0, 0, 0}, last{0, 0, field.dimensions[2] - 1};
+  for (int d = 0; d < 2; ++d) {
+    first[d] = std::max(0, int((low[d] - margin_mm - field.origin[d]) / field.spacing));
+    last[d] =
+        std::min(field.dimensions[d] - 1, int((high[d] + margin_mm - field.origin[d]) / field.spacing) + 1);
+  }
+  return geometry::cropped(field, first, last);
+}
+
+/// What is found of the vessel when walls are looked for at one threshold; `leak` says what is wrong with it,
+/// empty when nothing is.
 struct Attempt {
   GridSdf distance;
   double z_upper_mm = 0;
   std::string cut_note, leak;
 };
 
-Attempt attempt(const GridSdf& body, double parting_mm, const Frame& frame, const std::vector<Vec3>& seeds,
-                const LumenOptions& options) {
-  const geometry::Plane plane = geometry::Plane::at(Vec3::Zero(), Vec3::UnitZ());
+/// body: signed distance at the lumen threshold; strict: the same at the threshold for walls.
+Attempt attempt(const GridSdf& body, const GridSdf& strict, const Frame& frame,
+                const std::vector<Vec3>& seeds, const LumenOptions& options) {
+  const auto annulus_loop = [&](const GridSdf& of) {
+    return geometry::loop_at_origin(geometry::section(of, geometry::Plane::at(Vec3::Zero(), Vec3::UnitZ()),
+                                                      options.half_width_mm, options.spacing_mm));
+  };
+  const auto implausible = [](const geometry::Loop& loop) -> std::string {
+    if (loop.empty()) return {};
+    const double width = geometry::caliper(loop).greatest_mm, length = geometry::perimeter(loop);
+    const double compactness = length * length / (4 * std::numbers::pi * geometry::area(loop));
+    if (width > widest_annulus_mm)
+      return fmt::format("the section at the annulus plane is {:.0f} mm wide, expected {:.0f} mm at most",
+                         width, widest_annulus_mm);
+    if (compactness > least_compact)
+      return fmt::format(
+          "the section at the annulus plane has a perimeter of {:.0f} mm around {:.0f} mm2, too long for "
+          "an annulus",
+          length, geometry::area(loop));
+    return {};
+  };
   Attempt result;
   GridSdf& distance = result.distance;
-  distance = parted(body, parting_mm, parting_mm > options.opening_mm ? corner_mm : 0, seeds);
-  if (parting_mm > options.opening_mm) distance = parted(distance, options.opening_mm, 0, seeds);
-  const geometry::Loop loop =
-      geometry::loop_at_origin(geometry::section(distance, plane, options.half_width_mm, options.spacing_mm));
+  distance = parted(strict, options.opening_mm, seeds);
+  Vec3 where;
+  if (touches_guard(distance, -outflow_mm, 0, options.half_width_mm, &where)) {
+    result.leak = fmt::format("the outflow tract runs into a neighbour at {}, {:.0f} mm below the annulus",
+                              text_of(frame.to_scanner(where)), -where.z());
+    return result;
+  }
+  // The edge itself is that of the lumen threshold; only now are leaflets filled: before, the closing would
+  // bridge the thin walls between neighbours.
+  distance = within(body, distance, corner_mm);
+  distance = geometry::redistanced(geometry::component_at(distance, seeds), reach_mm);
+  if (options.closing_mm > 0) distance = closed(distance, options.closing_mm);
+  const geometry::Loop loop = annulus_loop(distance);
+  result.leak = implausible(loop);
+  if (!result.leak.empty()) return result;
   if (loop.empty()) {
     result.cut_note = "there is no lumen at the annulus";
     return result;
   }
-  const double width = geometry::caliper(loop).greatest_mm;
-  if (width > widest_annulus_mm) {
-    result.leak =
-        fmt::format("the section at the annulus plane is {:.0f} mm wide, expected {:.0f} mm at most", width,
-                    widest_annulus_mm);
-    return result;
-  }
   limit_to_channel(distance, loop, options.channel_margin_mm);
-  distance = parted(geometry::redistanced(distance, reach_mm), options.opening_mm, 0, seeds);
-  // Only now are leaflets filled: before, the closing would bridge the thin walls between neighbours.
-  if (options.closing_mm > 0) distance = closed(distance, options.closing_mm);
+  distance = parted(geometry::redistanced(distance, reach_mm), options.opening_mm, seeds);
   result.z_upper_mm = upper_cut(distance, options.upper_cut_mm, result.cut_note);
+  if (touches_guard(distance, 0, result.z_upper_mm, options.half_width_mm, &where))
+    result.leak =
+        fmt::format("the lumen reaches the side of the searched space at {}, {:.0f} mm above the annulus",
+                    text_of(frame.to_scanner(where)), where.z());
   continue_straight(distance, -options.lower_cut_mm, result.z_upper_mm);
   distance = geometry::redistanced(geometry::component_at(distance, {Vec3::Zero()}), reach_mm);
-  Vec3 where;
-  if (touches_side(distance, -options.lower_cut_mm, result.z_upper_mm, &where))
-    result.leak = fmt::format(
-        "the lumen reaches the side of the working box at {}, {:.0f} mm above the annulus; its "
-        "volume is {:.0f} mL",
-        text_of(frame.to_scanner(where)), where.z(), geometry::volume_inside(distance) / 1000);
-  else
-    for (double z = 0; z <= result.z_upper_mm; z += 2) {
-      const double area = area_at(distance, z);
-      if (area > widest_section_mm2)
-        result.leak =
-            fmt::format("the section {:.0f} mm above the annulus has {:.0f} mm2, expected {:.0f} mm2 at most",
-                        z, area, widest_section_mm2);
-    }
+  for (double z = 0; z <= result.z_upper_mm && result.leak.empty(); z += 2) {
+    const double area = area_at(distance, z);
+    if (area > widest_section_mm2)
+      result.leak =
+          fmt::format("the section {:.0f} mm above the annulus has {:.0f} mm2, expected {:.0f} mm2 at most",
+                      z, area, widest_section_mm2);
+  }
   return result;
 }
 
-/// From the raw field on the working grid to the open-ended lumen.
-/// seeds: points on both sides of the valve, so that leaflets that nearly touch do not part the vessel.
-Lumen finish(const GridSdf& field, const Frame& frame, const std::vector<Vec3>& seeds,
-             const LumenOptions& options, const Statistics& found) {
+/// From the raw field on the working grid to the open-ended lumen. The field rises by one spacing from blood
+/// to the lumen's edge. seeds: points on both sides of the valve, so that leaflets that touch do not part the
+/// vessel.
+Lumen finish(GridSdf field, const Frame& frame, const std::vector<Vec3>& seeds, const LumenOptions& options,
+             const Statistics& found) {
   std::vector<Vec3> inside{Vec3::Zero()};
   for (const Vec3& seed : seeds) inside.push_back(frame.from_scanner(seed));
-  const GridSdf body = geometry::redistanced(field, reach_mm);
-  // Walls thinner than a voxel let neighbours run together: part them at the smallest radius that does it.
-  Attempt best;
-  double parting = options.opening_mm;
-  for (;; parting += 1.5) {
-    best = attempt(body, parting, frame, inside, options);
-    if (best.leak.empty() || parting + 1.5 > largest_parting_mm) break;
-    log::info("opening by {:.1f} mm: {}", parting, best.leak);
-  }
+  limit_to_guard(field, options.half_width_mm, -options.lower_cut_mm - below_cut_mm);
+  // A wall thinner than a voxel is only a little darker than the blood on both sides: walls are looked for at
+  // rising thresholds, up to the first at which the vessel comes apart from its neighbours. On a coarser grid
+  // first: it is faster, and its result says which part of the grid is needed.
+  const auto search = [&](const GridSdf& on, double& strictness) {
+    const GridSdf body = geometry::redistanced(on, reach_mm);
+    for (;; strictness += strictness_step) {
+      GridSdf strict = on;
+      for (float& value : strict.values) value += float(strictness * options.spacing_mm);
+      Attempt found_here = attempt(body, strictness > 0 ? geometry::redistanced(strict, reach_mm) : body,
+                                   frame, inside, options);
+      if (found_here.leak.empty() || strictness + strictness_step > most_strict) return found_here;
+      log::info("walls {:.0f} % of the way from edge to blood: {}", 100 * strictness, found_here.leak);
+    }
+  };
+  double strictness = 0;
+  Attempt best = search(every_second(field), strictness);
+  if (best.leak.empty() && best.z_upper_mm >= least_upper_cut_mm)
+    best = search(around(field, best.distance, grid_margin_mm), strictness);
   if (!best.leak.empty())
     throw InputError(
-        "segmentation leaks: {}, also when necks up to {:.0f} mm are cut; raise {}, move "
-        "anatomy.annulus_centre_mm, turn anatomy.annulus_normal or lower anatomy.upper_cut_mm (now {:g})",
-        best.leak, 2 * parting, threshold_words(found), options.upper_cut_mm);
+        "segmentation leaks: {}; raise {}, move anatomy.annulus_centre_mm, turn anatomy.annulus_normal or "
+        "lower anatomy.upper_cut_mm (now {:g})",
+        best.leak, threshold_words(found), options.upper_cut_mm);
   if (best.z_upper_mm < least_upper_cut_mm)
     throw InputError(
         "segmentation is empty: {}, expected {:.0f} mm of lumen above the annulus {} at least; lower {}, "
@@ -159,7 +224,7 @@ Lumen finish(const GridSdf& field, const Frame& frame, const std::vector<Vec3>& 
   lumen.frame = frame;
   lumen.statistics = found;
   lumen.cut_note = best.cut_note;
-  lumen.parting_mm = parting;
+  lumen.wall_strictness = strictness;
   lumen.z_lower_mm = -options.lower_cut_mm;
   lumen.z_upper_mm = best.z_upper_mm;
   GridSdf distance = std::move(best.distance);
@@ -186,7 +251,6 @@ void trim(Lumen& lumen) {
   low[2] = std::max(0, int((lumen.z_lower_mm - kept_mm - field.origin.z()) / field.spacing));
   high[2] = std::min(nz - 1, int(std::ceil((lumen.z_upper_mm + kept_mm - field.origin.z()) / field.spacing)));
   lumen.distance = geometry::cropped(field, low, high);
-  if (lumen.calcium) lumen.calcium = geometry::cropped(*lumen.calcium, low, high);
 }
 
 template <class Function>
@@ -247,19 +311,24 @@ Lumen lumen_of_contrast(const Image& image, const Frame& frame, const std::vecto
   for (float& value : part.values) value = std::min(value, float(options.metal_threshold));
   denoise(part, std::max(2.5 * found.noise, 1.0), options.denoise_steps);
 
-  const GridSdf brightness =
-      working_grid(options, [&](const Vec3& x) { return part.sample(frame.to_scanner(x)); });
+  GridSdf field = working_grid(options, [&](const Vec3& x) { return part.sample(frame.to_scanner(x)); });
   // Calcium and metal cannot pull the edge: what is brighter than blood counts as blood.
-  GridSdf field = brightness;
   const double contrast = found.blood - found.lumen_threshold;
   for (float& value : field.values)
     value = float(options.spacing_mm * std::clamp((found.lumen_threshold - value) / contrast, -1.0, 1.0));
   const double low = -options.lower_cut_mm - margin_mm, high = options.upper_cut_mm + margin_mm;
   continue_straight(field, low, high);
-  Lumen lumen = finish(field, frame, seeds, options, found);
+  Lumen lumen = finish(std::move(field), frame, seeds, options, found);
+  trim(lumen);
+  GridSdf brightness = lumen.distance;
+  std::size_t n = 0;
+  for (int k = 0; k < brightness.dimensions[2]; ++k)
+    for (int j = 0; j < brightness.dimensions[1]; ++j)
+      for (int i = 0; i < brightness.dimensions[0]; ++i)
+        brightness.values[n++] =
+            float(part.sample(frame.to_scanner(brightness.origin + brightness.spacing * Vec3(i, j, k))));
   lumen.calcium = calcium_of(brightness, lumen.distance,
                              {found.calcium_threshold, options.metal_threshold, options.min_calcium_mm3});
-  trim(lumen);
   return lumen;
 }
 
@@ -282,7 +351,7 @@ Lumen lumen_of_labels(const Image& image, const Frame& frame, const std::vector<
     return options.spacing_mm * (1 - 2 * part.sample(frame.to_scanner(x)));
   });
   continue_straight(field, -options.lower_cut_mm - margin_mm, options.upper_cut_mm + margin_mm);
-  Lumen lumen = finish(field, frame, {}, options, {});
+  Lumen lumen = finish(std::move(field), frame, {}, options, {});
   trim(lumen);
   return lumen;
 }
@@ -290,7 +359,7 @@ Lumen lumen_of_labels(const Image& image, const Frame& frame, const std::vector<
 Lumen lumen_of_field(const std::function<double(const Vec3&)>& inside, const Frame& frame,
                      const LumenOptions& options) {
   GridSdf field = working_grid(options, [&](const Vec3& x) { return inside(frame.to_scanner(x)); });
-  Lumen lumen = finish(field, frame, {}, options, {});
+  Lumen lumen = finish(std::move(field), frame, {}, options, {});
   trim(lumen);
   return lumen;
 }
@@ -346,7 +415,7 @@ Frame annulus_from_seeds(const Image& image, const std::vector<Vec3>& seeds, con
   GridSdf field = working_grid(coarse, [&](const Vec3& x) {
     return (found.lumen_threshold - part.sample(rough.to_scanner(x))) / found.lumen_threshold;
   });
-  const GridSdf lumen = parted(geometry::redistanced(field, reach_mm), options.opening_mm, 0,
+  const GridSdf lumen = parted(geometry::redistanced(field, reach_mm), options.opening_mm,
                                {Vec3::Zero(), rough.from_scanner(seeds.back())});
   const auto line = geometry::follow(lumen, Vec3::Zero(), Vec3::UnitZ(), {});
   if (line.size() < 15)

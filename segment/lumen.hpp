@@ -22,7 +22,7 @@ struct LumenOptions {
   double lower_cut_mm = 15, upper_cut_mm = 45;  ///< below, above the annulus
   double half_width_mm = 50;                    ///< of the working box
   double channel_margin_mm = 2.5;               ///< of the outflow tract beyond the annulus contour
-  double closing_mm = 2, opening_mm = 2.5;      ///< radii
+  double closing_mm = 3, opening_mm = 2.5;      ///< radii
   double smoothing_mm = 1;
   int denoise_steps = 4;
   std::optional<double> lumen_threshold;  ///< in the image's values; absent: from the statistics
@@ -42,7 +42,8 @@ struct Lumen {
   std::optional<geometry::GridSdf> calcium;  ///< same grid; absent: none found
   double z_lower_mm = 0, z_upper_mm = 0;     ///< the cuts
   double smoothing_volume_change_pct = 0;
-  double parting_mm = 0;  ///< radius at which neighbours came apart
+  double wall_strictness =
+      0;  ///< where walls were looked for: 0 at the lumen's edge, 1 at the brightness of blood
   Statistics statistics;  ///< zero where no image values were used
   std::string cut_note;   ///< why the upper cut is lower than asked for; empty when it is not
 };

@@ -38,10 +38,31 @@ GridSdf closed(const GridSdf& distance, double radius_mm) {
   return geometry::redistanced(geometry::without_cavities(result), margin_mm);
 }
 
-GridSdf parted(const GridSdf& distance, double radius_mm, double corner_mm, const std::vector<Vec3>& seeds) {
+GridSdf parted(const GridSdf& distance, double radius_mm, const std::vector<Vec3>& seeds) {
   const GridSdf core = geometry::component_at(shifted(distance, radius_mm), seeds);
-  const GridSdf reach = shifted(geometry::redistanced(core, radius_mm + margin_mm), -radius_mm - corner_mm);
-  return geometry::redistanced(geometry::component_at(greatest(reach, distance, 1), seeds), margin_mm);
+  const GridSdf body = shifted(geometry::redistanced(core, radius_mm + margin_mm), -radius_mm);
+  return geometry::redistanced(geometry::component_at(greatest(body, distance, 1), seeds), margin_mm);
+}
+
+GridSdf within(const GridSdf& field, const GridSdf& body, double margin_mm) {
+  return greatest(shifted(body, -margin_mm), field, 1);
+}
+
+double guard_radius(double z_mm, double half_width_mm) {
+  constexpr double below_mm = 20, at_annulus_mm = 24;
+  return z_mm < 0 ? below_mm : std::min(at_annulus_mm + z_mm, half_width_mm - 1);
+}
+
+void limit_to_guard(GridSdf& field, double half_width_mm, double z_lower_mm) {
+  const auto [nx, ny, nz] = field.dimensions;
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        const Vec3 x = position(field, i, j, k);
+        float& value = field.values[(std::size_t(k) * ny + j) * nx + i];
+        const double beyond = std::hypot(x.x(), x.y()) - guard_radius(x.z(), half_width_mm);
+        value = std::max(value, float(std::max(beyond, z_lower_mm - x.z())));
+      }
 }
 
 void limit_to_channel(GridSdf& field, const geometry::Loop& annulus, double margin_mm) {
@@ -73,14 +94,17 @@ void continue_straight(GridSdf& field, double z_lower_mm, double z_upper_mm) {
   }
 }
 
-bool touches_side(const GridSdf& field, double z_lower_mm, double z_upper_mm, Vec3* where) {
+bool touches_guard(const GridSdf& field, double z_lower_mm, double z_upper_mm, double half_width_mm,
+                   Vec3* where) {
   const auto [nx, ny, nz] = field.dimensions;
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
-        if (i > 0 && j > 0 && i + 1 < nx && j + 1 < ny) continue;
+        if (field.at(i, j, k) >= 0) continue;
         *where = position(field, i, j, k);
-        if (where->z() >= z_lower_mm && where->z() <= z_upper_mm && field.at(i, j, k) < 0) return true;
+        if (where->z() < z_lower_mm || where->z() > z_upper_mm) continue;
+        const double away = std::hypot(where->x(), where->y());
+        if (away > guard_radius(where->z(), half_width_mm) - 1.5 * field.spacing) return true;
       }
   return false;
 }

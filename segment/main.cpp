@@ -106,7 +106,7 @@ void fill_summary(Summary& summary, const Anatomy& anatomy, const Root& root, do
                                {"lvot", json_of(root.lvot, root.z_lvot_mm)},
                                {"sinus", json_of(root.sinus, root.z_sinus_mm)},
                                {"stj", json_of(root.junction, root.z_junction_mm)}};
-  summary.extra["parting_radius_mm"] = lumen.parting_mm;
+  summary.extra["wall_strictness"] = lumen.wall_strictness;
   summary.extra["cuts_mm"] = {lumen.z_lower_mm, lumen.z_upper_mm};
   summary.extra["thresholds_HU"] = {{"blood", lumen.statistics.blood},
                                     {"noise", lumen.statistics.noise},

@@ -44,7 +44,7 @@ void declare_anatomy(Schema& schema) {
               "How far the outflow tract may reach beyond the annulus contour; parts it from the ventricle");
   schema.real("anatomy.level_set_mm", {0.5, 0.5, 0.5, 0.4}, {0.2, 2}, "Sample spacing of the level set");
   schema.integer("anatomy.denoise_steps", 4, {0, 50}, "Steps of edge-preserving diffusion");
-  schema.real("anatomy.closing_mm", 2, {0, 8}, "Leaflets and gaps narrower than twice this are filled");
+  schema.real("anatomy.closing_mm", 3, {0, 8}, "Leaflets and gaps narrower than twice this are filled");
   schema.real("anatomy.opening_mm", 2.5, {0, 8},
               "Side vessels and leaks narrower than twice this are removed");
   schema.real("anatomy.smoothing_mm", 1, {0, 5},
