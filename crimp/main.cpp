@@ -81,7 +81,7 @@ Estimate estimate(const Case& scene, int) {
   const double steps = (way_mm / p.speed_mm_per_s + p.ramp_s + 0.5 * p.settle_s) / p.step_s;
   const double leaflet = scene.real("device.leaflet_edge_mm"), skirt = scene.real("device.skirt_edge_mm");
   const double triangles =
-      scene.boolean("device.tissue") ? 1800 / (leaflet * leaflet) + 1600 / (skirt * skirt) : 0;
+      scene.boolean("device.tissue") ? 2400 / (leaflet * leaflet) + 3000 / (skirt * skirt) : 0;
   return {
       steps * (2e-4 + 7e-7 * triangles), 60 + 0.02 * triangles,
       "crimped diameter within 0.05 mm of the crimper's (contact overlap); radial force: elastic frame, for "

@@ -102,6 +102,7 @@ void fill_summary(Summary& summary, const Simulation& s, const History& history,
     summary.checks[name] = {value, limit, value <= limit};
   };
   at_most("kinetic_to_internal_energy_max", energy_ratio, 0.05);
+  at_most("crimped_diameter_mm", diameter, p.target_diameter_mm + 0.05);
   at_most("crimper_overlap_mm", m["crimper_overlap_mm"], 0.05);
   at_most("settled_energy_ratio", s.integrator().energies().ratio(), p.settled_ratio);
   if (!s.device().tissue.empty()) {
