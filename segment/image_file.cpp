@@ -9,7 +9,10 @@
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 
+#include <zlib.h>
+
 #include <cmath>
+#include <fstream>
 
 #include "core/errors.hpp"
 #include "image.hpp"
@@ -36,6 +39,55 @@ itk::ImageIOBase::Pointer format_of(const fs::path& path) {
       path.string());
 }
 
+/// Bytes of a file, unpacked where it is gzipped. What ITK's readers do with a short file is to leave zeros.
+std::uintmax_t unpacked_size(const fs::path& path) {
+  gzFile file = gzopen(path.c_str(), "rb");
+  if (!file) throw InputError("{}: cannot be opened; check its permissions", path.string());
+  std::vector<char> buffer(1 << 20);
+  std::uintmax_t total = 0;
+  int got = 0;
+  while ((got = gzread(file, buffer.data(), unsigned(buffer.size()))) > 0) total += std::uintmax_t(got);
+  int code = Z_OK;
+  gzerror(file, &code);
+  gzclose(file);
+  if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
+    throw InputError("{}: is damaged or cut short", path.string());
+  return total;
+}
+
+/// The bytes that a MetaImage header announces and the file holds behind it.
+void check_meta_image(const fs::path& path, std::uintmax_t expected) {
+  std::ifstream file(path, std::ios::binary);
+  fs::path data = path;
+  std::uintmax_t offset = 0;
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t equals = line.find('=');
+    const std::string value =
+        equals == std::string::npos ? "" : line.substr(line.find_first_not_of(" ", equals + 1));
+    if (line.starts_with("CompressedDataSize")) expected = std::stoull(value);
+    if (line.starts_with("ElementDataFile")) {
+      if (value.starts_with("LOCAL"))
+        offset = std::uintmax_t(file.tellg());
+      else
+        data = path.parent_path() / value;
+      break;
+    }
+  }
+  if (!fs::exists(data)) throw InputError("{}: its data file {} is missing", path.string(), data.string());
+  if (fs::file_size(data) < offset + expected)
+    throw InputError("{}: is cut short: {} bytes of data, expected {}", data.string(),
+                     fs::file_size(data) - offset, expected);
+}
+
+void check_complete(const fs::path& path, std::uintmax_t expected) {
+  const std::string name = path.filename().string();
+  if (ends_with(name, ".mha") || ends_with(name, ".mhd")) check_meta_image(path, expected);
+  if (ends_with(name, ".nii") || ends_with(name, ".nii.gz"))
+    if (const std::uintmax_t found = unpacked_size(path); found < expected + 348)
+      throw InputError("{}: is cut short: {} bytes of data, expected {}", path.string(), found,
+                       expected + 348);
+}
+
 Volume::Pointer read_file(const fs::path& path) {
   const auto format = format_of(path);
   format->SetFileName(path.string());
@@ -51,6 +103,7 @@ Volume::Pointer read_file(const fs::path& path) {
     if (!(format->GetSpacing(d) > 0))
       throw InputError("{}: spacing {} mm along axis {}; expected a positive one, correct the header",
                        path.string(), format->GetSpacing(d), d);
+  check_complete(path, std::uintmax_t(format->GetImageSizeInBytes()));
   const auto reader = itk::ImageFileReader<Volume>::New();
   reader->SetImageIO(format);
   reader->SetFileName(path.string());

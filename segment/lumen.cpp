@@ -44,9 +44,8 @@ std::string text_of(const Vec3& p) {
 }
 
 std::string threshold_words(const Statistics& found) {
-  return found.lumen_threshold > 0
-             ? fmt::format("anatomy.lumen_threshold_HU (now {:.0f})", found.lumen_threshold)
-             : std::string("anatomy.labels");
+  return found.blood > 0 ? fmt::format("anatomy.lumen_threshold_HU (now {:.0f})", found.lumen_threshold)
+                         : std::string("anatomy.labels");
 }
 
 /// Of all the lumen at one height.
