@@ -19,6 +19,7 @@ constexpr double clearance_fraction =
 constexpr double least_mid_radius = 0.05;  ///< of R_c, before rounding
 constexpr double largest_mid_radius = 0.75;  ///< of R_c
 constexpr double edge_rounding = 0.05;       ///< width of the Gaussian that rounds the free edge, of 2 R_n
+constexpr double least_clearance_mm = 0.3;   ///< away from the attachment
 constexpr int edge_samples = 400;
 
 /// 0 at 0, 1 from 1 on; twice continuously differentiable.
@@ -55,7 +56,11 @@ LeafletShape::LeafletShape(const Root& root, const LeafletProportions& p, double
   const double contact_z = std::max(0.0, edge_z - coaptation);
   sizes_.peak_mm = p.free_edge_peak_factor * d;
   sizes_.length_mm = slack * (std::hypot(nadir_radius_, contact_z) + coaptation) + sizes_.peak_mm;
-  fit_mid_radius();
+  design_length_ = sizes_.length_mm;
+  for (int pass = 0; pass < 4; ++pass) {
+    fit_mid_radius();
+    design_length_ += sizes_.length_mm - straight_length_mm();
+  }
 }
 
 LeafletShape::Cylindrical LeafletShape::attachment_at(double u) const {
@@ -66,8 +71,8 @@ LeafletShape::Cylindrical LeafletShape::attachment_at(double u) const {
 LeafletShape::Cylindrical LeafletShape::free_edge_at(double u) const {
   const double height = sizes_.commissure_z_mm;
   const double reach = nadir_radius_ - mid_radius_;
-  const double plain_length = sizes_.length_mm - sizes_.peak_mm;
-  const double full_z = std::sqrt(std::max(0.0, sizes_.length_mm * sizes_.length_mm - reach * reach));
+  const double plain_length = design_length_ - sizes_.peak_mm;
+  const double full_z = std::sqrt(std::max(0.0, design_length_ * design_length_ - reach * reach));
   const double plain_z = std::sqrt(std::max(0.0, plain_length * plain_length - reach * reach));
   const double w = 1 - u * u;
   const double z = height + (plain_z - height) * w + (full_z - plain_z) * w * w * w * w;
@@ -148,6 +153,14 @@ void LeafletShape::fit_mid_radius() {
   }
 }
 
+/// The same height and angle, but at most as far out as the wall less a clearance that grows from the
+/// attachment.
+Vec3 LeafletShape::off_the_wall(const Vec3& x, double from_attachment) const {
+  const double clearance = std::min(least_clearance_mm, 0.08 * from_attachment);
+  const double furthest = root_.wall_radius(root_.angle_of(x), x.z()) + inset_ - clearance;
+  return root_.radius_of(x) <= furthest ? x : root_.position(root_.angle_of(x), furthest, x.z());
+}
+
 /// Equal steps of the faster of attachment and free edge.
 std::vector<double> LeafletShape::columns(int count) const {
   constexpr int fine = 2000;
@@ -178,8 +191,10 @@ geometry::TriMesh LeafletShape::sampled(int across, int along) const {
   };
   const auto u = columns(across);
   for (int i = 1; i < across; ++i) {
-    const Vec3 low = attachment(u[i]), high = free_edge(u[i]);
-    for (int j = 0; j <= along; ++j) mesh.points.push_back(low + (high - low) * j / along);
+    const Vec3 low = attachment(u[i]), way = free_edge(u[i]) - low;
+    mesh.points.push_back(low);
+    for (int j = 1; j <= along; ++j)
+      mesh.points.push_back(off_the_wall(low + way * j / along, way.norm() * j / along));
   }
   for (int i = 0; i < across; ++i)
     for (int j = 0; j < along; ++j) {

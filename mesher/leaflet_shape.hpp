@@ -18,7 +18,8 @@
 // Stress-free shape: half open and ruled. In each half-plane through the axis a straight line runs from the
 // attachment to the free edge, so leaflets keep to their own sectors and cannot cross. Seen along the axis
 // the free edge follows the wall near the commissures and turns inwards to a radius at mid leaflet, which is
-// chosen so that the edge has its length. Assumed: the course of the free edge between these constraints.
+// chosen so that the edge has its length. Where a line would leave the lumen it is bent inwards. Assumed: the
+// course of the free edge between these constraints.
 #pragma once
 
 #include <array>
@@ -78,6 +79,7 @@ class LeafletShape {
   Cylindrical attachment_at(double u) const;
   Cylindrical free_edge_at(double u) const;
   double angle(double u) const { return middle_ + u * half_width_; }
+  Vec3 off_the_wall(const Vec3& x, double from_attachment) const;
   void trace_free_edge();
   double free_edge_length() const;
   void fit_mid_radius();
@@ -87,7 +89,8 @@ class LeafletShape {
   double inset_;
   double middle_ = 0, half_width_ = 0;
   double nadir_radius_ = 0, commissure_radius_ = 0;
-  double mid_radius_ = 0;
+  double mid_radius_ = 0;       ///< least radius of the free edge before rounding
+  double design_length_ = 0;    ///< leaflet length before rounding
   std::vector<double> edge_u_;  ///< the rounded free edge, in equal steps
   Points edge_;
 };

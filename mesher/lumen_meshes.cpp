@@ -53,8 +53,10 @@ LumenMeshes mesh_lumen(const AnatomyState& anatomy, const LumenOptions& options,
   // Ears that remeshing leaves on a rim lie in its plane like a cap.
   const auto open = geometry::without_caps(geometry::remesh(cut, smooth_rims), low, high);
   meshes.lumen = geometry::closed_by_caps(open, options.surface_edge_mm);
-  meshes.wall =
+  auto wall =
       geometry::tetrahedral_wall(open, anatomy.lumen, {options.wall_thickness_mm, options.wall_layers});
+  meshes.wall = std::move(wall.mesh);
+  meshes.thinned_nodes = wall.thinned_nodes;
   meshes.wall_region = regions(meshes.wall, anatomy.junction_mm);
   meshes.quality = geometry::quality_of(meshes.wall);
 

@@ -23,6 +23,7 @@ struct LumenMeshes {
   std::vector<std::int64_t>
       wall_region;  ///< a tetrahedron: 0 below the annulus plane, 1 sinuses, 2 above the junction
   std::vector<std::string> repairs;
+  int thinned_nodes = 0;  ///< outer wall nodes nearer than the thickness (folds)
   geometry::TetQuality quality;
   double lumen_volume_error_pct = 0;  ///< against the level set between the same planes
   double wall_volume_error_pct = 0;

@@ -70,6 +70,7 @@ void put_lumen(state::State& out, Summary& summary, const LumenMeshes& meshes) {
   metrics["wall_volume_error_pct"] = meshes.wall_volume_error_pct;
   metrics["volume_error_pct"] = std::max(meshes.lumen_volume_error_pct, meshes.wall_volume_error_pct);
   metrics["lumen_triangles"] = double(meshes.lumen.triangles.size());
+  metrics["wall_thinned_nodes"] = double(meshes.thinned_nodes);
   metrics["surface_repairs"] = double(meshes.repairs.size());
   at_least(summary, "min_dihedral_deg", meshes.quality.min_dihedral_deg, 5);
   at_most(summary, "max_aspect", meshes.quality.max_aspect, 15);

@@ -87,6 +87,11 @@ Vec3 Root::position(double angle, double radius, double z) const {
   return base_ + z * slope_ + radius * ray(angle);
 }
 
+double Root::angle_of(const Vec3& x) const {
+  const Vec3 from_axis = x - base_ - x.z() * slope_;
+  return std::atan2(from_axis.y(), from_axis.x());
+}
+
 double Root::wall_radius(double angle, double z) const {
   return distance_to_wall(lumen_, base_ + z * slope_, ray(angle));
 }

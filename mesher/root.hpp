@@ -15,6 +15,8 @@ class Root {
   Root(const geometry::GridSdf& lumen, double low_z_mm, double high_z_mm);
 
   Vec3 position(double angle_rad, double radius_mm, double z_mm) const;
+  /// Angle about the axis, at the same z.
+  double angle_of(const Vec3& x) const;
   /// Distance from the axis, at the same z.
   double radius_of(const Vec3& x) const { return (x - base_ - x.z() * slope_).norm(); }
   /// First wall along the ray from the axis. InputError when there is none within 60 mm.

@@ -13,6 +13,9 @@ namespace {
 constexpr double poor_scaled_jacobian = 0.15;
 constexpr int normal_smoothings = 4;
 constexpr int outer_smoothings = 60;
+constexpr double folded_scaled_jacobian = 0.06;
+constexpr int thinnings = 14;
+constexpr double least_share = 0.2;  ///< of the thickness
 
 /// A vertex of the border may move in its cut plane only.
 struct InnerSurface {
@@ -93,19 +96,26 @@ TetMesh prisms_cut(const TriMesh& inner, const Points& outer, int layers) {
   return wall;
 }
 
-/// Outer nodes of badly shaped elements and their neighbours.
-std::vector<char> nodes_to_move(const TetMesh& wall, const InnerSurface& inner) {
-  const std::size_t count = inner.mesh.points.size();
-  std::vector<char> bad(count, 0);
+/// Outer nodes of elements with a scaled Jacobian below the limit.
+std::vector<char> nodes_of_poor(const TetMesh& wall, std::size_t count, double limit) {
+  std::vector<char> poor(count, 0);
   for (const auto& t : wall.tetrahedra)
     if (tetrahedron_scaled_jacobian(wall.points[t[0]], wall.points[t[1]], wall.points[t[2]],
-                                    wall.points[t[3]]) < poor_scaled_jacobian)
-      for (int node : t) bad[node % count] = 1;
-  std::vector<char> moved = bad;
-  for (std::size_t i = 0; i < count; ++i)
-    if (bad[i])
-      for (int other : inner.neighbours[i]) moved[other] = 1;
-  return moved;
+                                    wall.points[t[3]]) < limit)
+      for (int node : t) poor[node % count] = 1;
+  return poor;
+}
+
+std::vector<char> with_neighbours(std::vector<char> nodes, const InnerSurface& inner) {
+  const std::vector<char> given = nodes;
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (given[i])
+      for (int other : inner.neighbours[i]) nodes[other] = 1;
+  return nodes;
+}
+
+bool any(const std::vector<char>& nodes) {
+  return std::any_of(nodes.begin(), nodes.end(), [](char flag) { return flag; });
 }
 
 void relax_outer(Points& outer, const InnerSurface& inner, const GridSdf& phi, double level,
@@ -126,7 +136,7 @@ void relax_outer(Points& outer, const InnerSurface& inner, const GridSdf& phi, d
 
 }  // namespace
 
-TetMesh tetrahedral_wall(const TriMesh& lumen, const GridSdf& phi, const WallOptions& options) {
+WallMesh tetrahedral_wall(const TriMesh& lumen, const GridSdf& phi, const WallOptions& options) {
   VALSALVA_ASSERT(options.thickness_mm > 0 && options.layers > 0);
   const InnerSurface inner(lumen);
   const Points directions = growth_directions(inner);
@@ -134,20 +144,35 @@ TetMesh tetrahedral_wall(const TriMesh& lumen, const GridSdf& phi, const WallOpt
   for (std::size_t i = 0; i < lumen.points.size(); ++i)
     outer.push_back(point_at_level(phi, lumen.points[i], directions[i], options.thickness_mm));
 
-  TetMesh wall = prisms_cut(lumen, outer, options.layers);
+  const std::size_t count = lumen.points.size();
+  WallMesh wall{prisms_cut(lumen, outer, options.layers)};
   for (int sweep = 0; sweep < outer_smoothings; ++sweep) {
-    const auto moved = nodes_to_move(wall, inner);
-    if (std::none_of(moved.begin(), moved.end(), [](char flag) { return flag; })) break;
-    relax_outer(outer, inner, phi, options.thickness_mm, moved);
-    wall = prisms_cut(lumen, outer, options.layers);
+    const auto poor = nodes_of_poor(wall.mesh, count, poor_scaled_jacobian);
+    if (!any(poor)) break;
+    relax_outer(outer, inner, phi, options.thickness_mm, with_neighbours(poor, inner));
+    wall.mesh = prisms_cut(lumen, outer, options.layers);
   }
-  const TetQuality quality = quality_of(wall);
+  std::vector<double> share(count, 1.0);
+  for (int sweep = 0; sweep < thinnings; ++sweep) {
+    const auto folded = nodes_of_poor(wall.mesh, count, folded_scaled_jacobian);
+    if (!any(folded)) break;
+    const auto thinned = with_neighbours(folded, inner);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!thinned[i] || share[i] < least_share) continue;
+      share[i] *= 0.85;
+      outer[i] = lumen.points[i] + 0.85 * (outer[i] - lumen.points[i]);
+    }
+    wall.mesh = prisms_cut(lumen, outer, options.layers);
+  }
+  wall.thinned_nodes =
+      static_cast<int>(std::count_if(share.begin(), share.end(), [](double s) { return s < 1; }));
+
+  const TetQuality quality = quality_of(wall.mesh);
   if (quality.min_scaled_jacobian <= 0) {
-    const Vec3 place = wall.points[wall.tetrahedra[quality.worst][0]];
+    const Vec3 place = wall.mesh.points[wall.mesh.tetrahedra[quality.worst][0]];
     throw NumericalFailure(
         "the wall of {:.2f} mm folds over itself near ({:.2f}, {:.2f}, {:.2f}) mm: reduce "
-        "mesh.wall_thickness_mm or "
-        "smooth the lumen there",
+        "mesh.wall_thickness_mm or smooth the lumen there",
         options.thickness_mm, place.x(), place.y(), place.z());
   }
   return wall;
