@@ -59,7 +59,7 @@ double area_at(const GridSdf& distance, double z) {
 }
 
 /// Where the vessel can be cut by z = const, at most `wanted`.
-double upper_cut(const GridSdf& lumen, double wanted, std::string& note) {
+double upper_cut(const GridSdf& lumen, double wanted, double half_width_mm, std::string& note) {
   geometry::CentrelineOptions options;
   const auto line = geometry::follow(lumen, Vec3::Zero(), Vec3::UnitZ(), options);
   double reached = 0;
@@ -74,6 +74,15 @@ double upper_cut(const GridSdf& lumen, double wanted, std::string& note) {
         geometry::loop_at_origin(geometry::section(lumen, level, options.half_width_mm, options.lattice_mm));
     if (loop.empty() || geometry::area(loop) > most_oblique * p.section.area_mm2) {
       note = fmt::format("a horizontal cut is no round disc from z = {:.0f} mm on", p.position.z());
+      break;
+    }
+    double edge = 0;
+    for (const geometry::Vec2& corner : loop) {
+      const Vec3 x = level.point(corner);
+      edge = std::max(edge, std::hypot(x.x(), x.y()));
+    }
+    if (p.position.z() > 0 && edge > guard_radius(p.position.z(), half_width_mm) - 2) {
+      note = fmt::format("the aorta leaves the searched space from z = {:.0f} mm on", p.position.z());
       break;
     }
     reached = std::max(reached, p.position.z());
@@ -166,7 +175,7 @@ Attempt attempt(const GridSdf& body, const GridSdf& strict, const Frame& frame,
   }
   limit_to_channel(distance, loop, options.channel_margin_mm);
   distance = parted(geometry::redistanced(distance, reach_mm), options.opening_mm, seeds);
-  result.z_upper_mm = upper_cut(distance, options.upper_cut_mm, result.cut_note);
+  result.z_upper_mm = upper_cut(distance, options.upper_cut_mm, options.half_width_mm, result.cut_note);
   if (touches_guard(distance, 0, result.z_upper_mm, options.half_width_mm, &where))
     result.leak =
         fmt::format("the lumen reaches the side of the searched space at {}, {:.0f} mm above the annulus",
