@@ -228,6 +228,10 @@ Lumen finish(GridSdf field, const Frame& frame, const std::vector<Vec3>& seeds, 
         "segmentation is empty: {}, expected {:.0f} mm of lumen above the annulus {} at least; lower {}, "
         "or move anatomy.annulus_centre_mm",
         best.cut_note, least_upper_cut_mm, text_of(frame.origin), threshold_words(found));
+  if (area_at(best.distance, -options.lower_cut_mm) < 0.3 * area_at(best.distance, 0))
+    throw InputError(
+        "the lumen ends above the lower cut, {:g} mm below the annulus {}; lower anatomy.lower_cut_mm",
+        options.lower_cut_mm, text_of(frame.origin));
   Lumen lumen;
   lumen.frame = frame;
   lumen.statistics = found;
