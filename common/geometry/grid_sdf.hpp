@@ -12,7 +12,7 @@ struct GridSdf {
   std::array<int, 3> dimensions{};  ///< samples nx, ny, nz
   Vec3 origin = Vec3::Zero();       ///< position of sample (0, 0, 0)
   double spacing = 1;
-  std::vector<float> values;        ///< x fastest
+  std::vector<float> values;  ///< x fastest
 
   /// Trilinear; outside the grid the nearest sample's value.
   double value(const Vec3& x) const;

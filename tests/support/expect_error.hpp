@@ -11,7 +11,8 @@
 
 namespace valsalva::test {
 
-inline void expect_error(ExitCode code, std::initializer_list<const char*> words, const std::function<void()>& act) {
+inline void expect_error(ExitCode code, std::initializer_list<const char*> words,
+                         const std::function<void()>& act) {
   try {
     act();
     ADD_FAILURE() << "no error was thrown";

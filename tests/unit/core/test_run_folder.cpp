@@ -11,7 +11,9 @@
 namespace valsalva {
 namespace {
 
-void touch(const std::filesystem::path& path) { std::ofstream(path) << "x"; }
+void touch(const std::filesystem::path& path) {
+  std::ofstream(path) << "x";
+}
 
 TEST(RunFolder, ListsStatesByIndexAndKeepsTwo) {
   const test::TemporaryFolder folder;

@@ -78,7 +78,8 @@ TEST(State, AnUnfinishedParentIsRefused) {
   State state = sample();
   state.final = false;
   write(folder / "s.h5", state);
-  expect_error(ExitCode::input, {"has not finished", "--resume"}, [&] { read_final(folder / "s.h5", "crimp"); });
+  expect_error(ExitCode::input, {"has not finished", "--resume"},
+               [&] { read_final(folder / "s.h5", "crimp"); });
 }
 
 TEST(State, AValueThatIsNotFiniteIsNeverWritten) {
@@ -108,7 +109,8 @@ TEST(State, ViewsLinkIntoEveryKeptState) {
   const RunFolder run(folder / "crimp");
   for (const long index : {1, 2}) write(run.state_path(index), sample());
   write_views(run.path(), run.state_path(2));
-  for (const char* name : {"view_leaflets.hdf", "view_leaflets.hdf.series", "view_leaflets_000001.hdf", "view_fluid.hdf"})
+  for (const char* name :
+       {"view_leaflets.hdf", "view_leaflets.hdf.series", "view_leaflets_000001.hdf", "view_fluid.hdf"})
     EXPECT_TRUE(std::filesystem::exists(run.file(name))) << name;
 }
 
