@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/errors.hpp"
 
 namespace valsalva {
 namespace {
@@ -25,22 +29,32 @@ double seconds_between(auto from, auto to) {
 
 }  // namespace
 
+bool draws_bar(const ProgressSurroundings& s) {
+  const std::string_view wish = s.wish ? s.wish : "", kind = s.kind ? s.kind : "";
+  if (wish == "bar") return true;
+  if (wish == "lines") return false;
+  if (!wish.empty())
+    throw InputError("environment variable VALSALVA_PROGRESS is '{}'; expected bar, lines or nothing", wish);
+  return s.terminal && !s.mpi_size && kind != "dumb";
+}
+
 Progress::Progress(std::string label, double total, bool speaks)
     : label_(std::move(label)),
       total_(total),
       speaks_(speaks),
-      terminal_(isatty(STDOUT_FILENO) == 1),
+      bar_(draws_bar({isatty(STDOUT_FILENO) == 1, std::getenv("OMPI_COMM_WORLD_SIZE"), std::getenv("TERM"),
+                      std::getenv("VALSALVA_PROGRESS")})),
       start_(Clock::now()),
       last_(start_) {}
 
 Progress::~Progress() {
-  if (drawn_ && terminal_) std::fputc('\n', stdout);
+  if (drawn_ && bar_) std::fputc('\n', stdout);
 }
 
 void Progress::update(double done, const std::string& note) {
   if (!speaks_) return;
   const auto now = Clock::now();
-  if (seconds_between(last_, now) < (terminal_ ? seconds_between_bars : seconds_between_lines)) return;
+  if (seconds_between(last_, now) < (bar_ ? seconds_between_bars : seconds_between_lines)) return;
   last_ = now;
   draw(done, note, seconds_between(start_, now));
 }
@@ -51,7 +65,7 @@ void Progress::draw(double done, const std::string& note, double elapsed_s) {
   const std::string left =
       here > 0 ? duration(elapsed_s * std::max(0.0, total_ - done) / here) + " left" : "";
   const std::string line = fmt::format("{} {:5.1f} %  {}  {}", label_, 100 * fraction, left, note);
-  if (terminal_) {
+  if (bar_) {
     constexpr int width = 24;
     const int full = static_cast<int>(fraction * width);
     fmt::print(stdout, "\r\033[K[{}{}] {}", std::string(full, '='), std::string(width - full, ' '), line);

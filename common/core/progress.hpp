@@ -1,10 +1,26 @@
-// Progress of long work: a bar with the time left on a terminal, plain lines otherwise.
+// Progress of long work: a bar with the time left on a terminal that a person looks at, plain lines
+// otherwise.
+//
+// Under mpirun a program sees a terminal of mpirun's own, wherever mpirun's output goes: plain lines there,
+// and on terminals that cannot redraw a line (TERM=dumb). The environment variable VALSALVA_PROGRESS = bar or
+// lines decides otherwise.
 #pragma once
 
 #include <chrono>
 #include <string>
 
 namespace valsalva {
+
+/// What decides between bar and lines; texts may be null (not set).
+struct ProgressSurroundings {
+  bool terminal = false;           ///< stdout is one
+  const char* mpi_size = nullptr;  ///< OMPI_COMM_WORLD_SIZE
+  const char* kind = nullptr;      ///< TERM
+  const char* wish = nullptr;      ///< VALSALVA_PROGRESS
+};
+
+/// InputError when the wish is neither bar nor lines.
+bool draws_bar(const ProgressSurroundings& surroundings);
 
 class Progress {
  public:
@@ -27,7 +43,7 @@ class Progress {
   double total_;
   double started_at_ = 0;
   bool speaks_;
-  bool terminal_;
+  bool bar_;
   bool drawn_ = false;
   Clock::time_point start_;
   Clock::time_point last_;
