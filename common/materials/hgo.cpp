@@ -21,9 +21,9 @@ Hgo::Hgo(const HgoParameters& parameters) : p_(parameters) {
   require(std::isfinite(p_.k2) && p_.k2 > 0, "k2", p_.k2, "a positive number");
 }
 
-InvariantResponse Hgo::respond(double i1, const std::array<double, 2>& i4, double factor) const {
+InvariantResponse Hgo::derivatives(const Invariants& at, int, double factor) const {
   InvariantResponse r;
-  const double q1 = p_.c01 * (i1 - 3);
+  const double q1 = p_.c01 * (at.i1 - 3);
   const CappedExponential e1 = capped_exponential(q1);
   const double c10 = factor * p_.c10_Pa;
   r.energy = c10 * (e1.value - 1);
@@ -31,7 +31,7 @@ InvariantResponse Hgo::respond(double i1, const std::array<double, 2>& i4, doubl
   r.d11 = c10 * p_.c01 * p_.c01 * e1.second;
   r.exponent = q1;
   for (int i = 0; i < 2; ++i) {
-    const double s = i4[i] - 1;
+    const double s = at.i4[i] - 1;
     if (s <= 0) continue;
     const double q = p_.k2 * s * s;
     const CappedExponential e = capped_exponential(q);

@@ -28,7 +28,7 @@ class Hgo : public InvariantLaw {
   /// InputError when C10, C01 or k2 is not positive, or k1 negative.
   explicit Hgo(const HgoParameters& parameters);
   std::string name() const override { return "hgo"; }
-  InvariantResponse respond(double i1, const std::array<double, 2>& i4, double factor) const override;
+  InvariantResponse derivatives(const Invariants& at, int families, double factor) const override;
   double matrix_modulus_Pa() const { return 6 * p_.c10_Pa * p_.c01; }
 
  private:

@@ -1,31 +1,40 @@
-// What a shell or solid asks of an incompressible law with up to two fibre families: the strain energy per
-// reference volume W(I1, I4_1, I4_2) and its derivatives. A new law is a new file pair; no body changes for
-// it.
-//
-// I1 = tr C (three-dimensional), I4_i = a_i . C a_i. `factor` multiplies the isotropic matrix part only (a
-// stenotic leaflet has C10 x 1000). Pa.
+// Laws W(I1, I2, I4_1, I4_2): a new one is a file pair that fills an InvariantResponse, nothing else. The
+// assembly of stress and tangent, in space and in the plane, is here.
+//   I1 = tr C,  I2 = ((tr C)^2 - tr C^2)/2,  I4_i = a_i . C a_i.
+//   S = 2 [(W1 + I1 W2) 1 - W2 C + sum_i W4i a_i a_i]
+// In the incompressible plane C33 = 1/det C: I1 = tr C + 1/det C, I2 = det C + tr C/det C (plane_stress.hpp).
+// Laws that couple I2 with another invariant or the two fibre families with each other are not covered.
 #pragma once
 
-#include <array>
-#include <string>
+#include "materials/elastic_law.hpp"
 
 namespace valsalva::materials {
+
+struct Invariants {
+  double i1 = 3, i2 = 3;
+  std::array<double, 2> i4{1, 1};  ///< 1 for an absent family
+};
 
 struct InvariantResponse {
   double energy = 0;            ///< W, Pa
   double d1 = 0;                ///< dW/dI1
   double d11 = 0;               ///< d2W/dI1^2
+  double d2 = 0;                ///< dW/dI2
+  double d22 = 0;               ///< d2W/dI2^2
   std::array<double, 2> d4{};   ///< dW/dI4_i
   std::array<double, 2> d44{};  ///< d2W/dI4_i^2
   std::array<double, 2> d14{};  ///< d2W/(dI1 dI4_i), for laws with dispersion
   double exponent = 0;          ///< the largest argument of an exponential, 0 for laws without one
 };
 
-class InvariantLaw {
+class InvariantLaw : public ElasticLaw {
  public:
-  virtual ~InvariantLaw() = default;
-  virtual std::string name() const = 0;
-  virtual InvariantResponse respond(double i1, const std::array<double, 2>& i4, double factor) const = 0;
+  /// `families` is how many fibre families the body has; the others' I4 is 1.
+  virtual InvariantResponse derivatives(const Invariants& invariants, int families, double factor) const = 0;
+
+  ElasticResponse respond(const Mat3& c, const Fibres& fibres, double factor, Derivatives wanted) const final;
+  PlaneTangent plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
+                     Derivatives wanted) const final;
 };
 
 }  // namespace valsalva::materials

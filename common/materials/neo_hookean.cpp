@@ -11,9 +11,9 @@ NeoHookean::NeoHookean(double shear_modulus_Pa) : mu_(shear_modulus_Pa) {
     throw InputError("material neo-hookean: shear modulus (Pa) = {}; expected a positive number", mu_);
 }
 
-InvariantResponse NeoHookean::respond(double i1, const std::array<double, 2>&, double factor) const {
+InvariantResponse NeoHookean::derivatives(const Invariants& at, int, double factor) const {
   InvariantResponse r;
-  r.energy = 0.5 * factor * mu_ * (i1 - 3);
+  r.energy = 0.5 * factor * mu_ * (at.i1 - 3);
   r.d1 = 0.5 * factor * mu_;
   return r;
 }

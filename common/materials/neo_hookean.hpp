@@ -10,7 +10,7 @@ class NeoHookean : public InvariantLaw {
   /// InputError when the shear modulus is not positive.
   explicit NeoHookean(double shear_modulus_Pa);
   std::string name() const override { return "neo-hookean"; }
-  InvariantResponse respond(double i1, const std::array<double, 2>& i4, double factor) const override;
+  InvariantResponse derivatives(const Invariants& at, int families, double factor) const override;
 
  private:
   double mu_;

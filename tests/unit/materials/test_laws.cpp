@@ -164,8 +164,8 @@ TEST(Laws, FibresBearNoCompression) {
 
 TEST(Laws, FactorScalesTheMatrixOnly) {
   const Hgo law(native_leaflet_healthy);
-  const double i1 = 3.05;
-  const InvariantResponse one = law.respond(i1, {1.1, 1.0}, 1), thousand = law.respond(i1, {1.1, 1.0}, 1000);
+  const Invariants at{3.05, 3.05, {1.1, 1.0}};
+  const InvariantResponse one = law.derivatives(at, 2, 1), thousand = law.derivatives(at, 2, 1000);
   EXPECT_NEAR(thousand.d1, 1000 * one.d1, 1e-9 * thousand.d1);
   EXPECT_EQ(thousand.d4[0], one.d4[0]);
 }
@@ -180,8 +180,8 @@ TEST(Laws, ExponentialIsContinuedTwiceDifferentiably) {
   EXPECT_NEAR(above.second, below.second, 2e-6 * e);
   EXPECT_LT(capped_exponential(700).value, 1e9);  // the plain exponential would be 1e304
   const Hgo law(native_leaflet_healthy);
-  EXPECT_GT(law.respond(3.5, {1, 1}, 1).exponent, exponent_cap);
-  EXPECT_LT(law.respond(3.1, {1, 1}, 1).exponent, exponent_cap);
+  EXPECT_GT(law.derivatives({3.5, 3.5, {1, 1}}, 2, 1).exponent, exponent_cap);
+  EXPECT_LT(law.derivatives({3.1, 3.1, {1, 1}}, 2, 1).exponent, exponent_cap);
 }
 
 TEST(Laws, CollapsedTrianglesStayFiniteAndRepel) {

@@ -1,0 +1,97 @@
+#include "materials/invariant_law.hpp"
+
+#include "materials/thickness_stretch.hpp"
+#include "materials/voigt.hpp"
+
+namespace valsalva::materials {
+namespace {
+
+struct PlaneInvariants : Invariants {
+  ThicknessStretch c33;
+  Eigen::Matrix2d cofactor;  // of C: d(det C)/dC
+  double trace, det;
+};
+
+PlaneInvariants invariants_of(const Eigen::Matrix2d& c, const PlaneFibres& fibres) {
+  PlaneInvariants v;
+  v.det = c(0, 0) * c(1, 1) - c(0, 1) * c(1, 0);
+  v.trace = c(0, 0) + c(1, 1);
+  v.c33 = thickness_stretch(v.det);
+  v.cofactor << c(1, 1), -c(0, 1), -c(1, 0), c(0, 0);
+  v.i1 = v.trace + v.c33.value;
+  v.i2 = v.det + v.trace * v.c33.value;
+  for (int i = 0; i < fibres.count; ++i) v.i4[i] = fibres.direction[i].dot(c * fibres.direction[i]);
+  return v;
+}
+
+}  // namespace
+
+ElasticResponse InvariantLaw::respond(const Mat3& c, const Fibres& fibres, double factor,
+                                      Derivatives wanted) const {
+  Invariants v;
+  v.i1 = c.trace();
+  v.i2 = 0.5 * (v.i1 * v.i1 - c.squaredNorm());
+  for (int i = 0; i < fibres.count; ++i) v.i4[i] = fibres.direction[i].dot(c * fibres.direction[i]);
+  const InvariantResponse w = derivatives(v, fibres.count, factor);
+
+  const Mat3 g2 = v.i1 * Mat3::Identity() - c;  // dI2/dC
+  ElasticResponse r;
+  r.energy = w.energy;
+  r.exponent = w.exponent;
+  r.stress = 2 * (w.d1 * Mat3::Identity() + w.d2 * g2);
+  for (int i = 0; i < fibres.count; ++i)
+    r.stress += 2 * w.d4[i] * fibres.direction[i] * fibres.direction[i].transpose();
+  if (wanted == Derivatives::stress) return r;
+
+  const Voigt6 one = voigt(Mat3::Identity());
+  r.tangent = w.d11 * one * one.transpose();
+  if (w.d2 != 0 || w.d22 != 0) {
+    const Voigt6 g = voigt(g2);
+    r.tangent +=
+        w.d22 * g * g.transpose() + w.d2 * (one * one.transpose() - symmetric_square(Mat3::Identity()));
+  }
+  for (int i = 0; i < fibres.count; ++i) {
+    const Voigt6 a = voigt(Mat3(fibres.direction[i] * fibres.direction[i].transpose()));
+    r.tangent += w.d44[i] * a * a.transpose() + w.d14[i] * (one * a.transpose() + a * one.transpose());
+  }
+  r.tangent *= 4;
+  return r;
+}
+
+PlaneTangent InvariantLaw::plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
+                                 Derivatives wanted) const {
+  const PlaneInvariants v = invariants_of(c, fibres);
+  const InvariantResponse w = derivatives(v, fibres.count, factor);
+  const bool uses_i2 = w.d2 != 0 || w.d22 != 0;
+  const Eigen::Matrix2d i1_gradient = Eigen::Matrix2d::Identity() + v.c33.first * v.cofactor;
+  const Eigen::Matrix2d i2_gradient =
+      v.cofactor + v.c33.value * Eigen::Matrix2d::Identity() + v.trace * v.c33.first * v.cofactor;
+
+  PlaneTangent r;
+  r.at = {w.energy, 2 * w.d1 * i1_gradient, w.exponent, v.c33.value};
+  if (uses_i2) r.at.stress += 2 * w.d2 * i2_gradient;
+  for (int i = 0; i < fibres.count; ++i)
+    r.at.stress += 2 * w.d4[i] * fibres.direction[i] * fibres.direction[i].transpose();
+  if (wanted == Derivatives::stress) return r;
+
+  const Eigen::Vector3d g = plane_voigt(i1_gradient);
+  const Eigen::Vector3d k = plane_voigt(v.cofactor);
+  const Eigen::Matrix3d& det_hessian = plane_determinant_hessian();
+  Eigen::Matrix3d d = w.d11 * g * g.transpose();
+  d += w.d1 * (v.c33.second * k * k.transpose() + v.c33.first * det_hessian);
+  if (uses_i2) {
+    const Eigen::Vector3d g2 = plane_voigt(i2_gradient);
+    const Eigen::Vector3d one(1, 1, 0);
+    d += w.d22 * g2 * g2.transpose() + w.d2 * ((1 + v.trace * v.c33.first) * det_hessian +
+                                               v.c33.first * (one * k.transpose() + k * one.transpose()) +
+                                               v.trace * v.c33.second * k * k.transpose());
+  }
+  for (int i = 0; i < fibres.count; ++i) {
+    const Eigen::Vector3d a = plane_voigt(fibres.direction[i] * fibres.direction[i].transpose());
+    d += w.d44[i] * a * a.transpose() + w.d14[i] * (g * a.transpose() + a * g.transpose());
+  }
+  r.tangent = 4 * d;
+  return r;
+}
+
+}  // namespace valsalva::materials

@@ -1,0 +1,27 @@
+// C33 = 1/det C of the in-plane 2x2 C (incompressible), with its first two derivatives with respect to det C;
+// below det C = 1e-4 (a stretch of 0.1 both ways) continued by its tangent: finite and still repelling.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace valsalva::materials {
+
+inline constexpr double determinant_floor = 1e-4;
+
+struct ThicknessStretch {
+  double value, first, second;
+};
+
+inline ThicknessStretch thickness_stretch(double det) {
+  constexpr double f = determinant_floor;
+  if (det < f) return {2 / f - det / (f * f), -1 / (f * f), 0};
+  return {1 / det, -1 / (det * det), 2 / (det * det * det)};
+}
+
+/// Second derivative of det C = C11 C22 - C12 C21 in Voigt order 11, 22, 12.
+inline const Eigen::Matrix3d& plane_determinant_hessian() {
+  static const Eigen::Matrix3d hessian = (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, -0.5).finished();
+  return hessian;
+}
+
+}  // namespace valsalva::materials
