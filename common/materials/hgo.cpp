@@ -2,26 +2,20 @@
 
 #include <algorithm>
 
-#include "core/errors.hpp"
-#include "materials/capped_exponential.hpp"
+#include "materials/checks.hpp"
+#include "materials/fibre_exponential.hpp"
 
 namespace valsalva::materials {
-namespace {
-
-void require(bool holds, const char* key, double found, const char* expected) {
-  if (!holds) throw InputError("material hgo: {} = {}; expected {}", key, found, expected);
-}
-
-}  // namespace
 
 Hgo::Hgo(const HgoParameters& parameters) : p_(parameters) {
-  require(std::isfinite(p_.c10_Pa) && p_.c10_Pa > 0, "C10 (Pa)", p_.c10_Pa, "a positive number");
-  require(std::isfinite(p_.c01) && p_.c01 > 0, "C01", p_.c01, "a positive number");
-  require(std::isfinite(p_.k1_Pa) && p_.k1_Pa >= 0, "k1 (Pa)", p_.k1_Pa, "a number that is not negative");
-  require(std::isfinite(p_.k2) && p_.k2 > 0, "k2", p_.k2, "a positive number");
+  require_positive("hgo", "C10 (Pa)", p_.c10_Pa);
+  require_positive("hgo", "C01", p_.c01);
+  require_not_negative("hgo", "k1 (Pa)", p_.k1_Pa);
+  require_positive("hgo", "k2", p_.k2);
+  require(p_.kappa >= 0 && p_.kappa <= 1.0 / 3.0, "hgo", "kappa", p_.kappa, "a number in [0, 1/3]");
 }
 
-InvariantResponse Hgo::derivatives(const Invariants& at, int, double factor) const {
+InvariantResponse Hgo::derivatives(const Invariants& at, int families, double factor) const {
   InvariantResponse r;
   const double q1 = p_.c01 * (at.i1 - 3);
   const CappedExponential e1 = capped_exponential(q1);
@@ -30,15 +24,18 @@ InvariantResponse Hgo::derivatives(const Invariants& at, int, double factor) con
   r.d1 = c10 * p_.c01 * e1.first;
   r.d11 = c10 * p_.c01 * p_.c01 * e1.second;
   r.exponent = q1;
-  for (int i = 0; i < 2; ++i) {
-    const double s = at.i4[i] - 1;
-    if (s <= 0) continue;
-    const double q = p_.k2 * s * s;
-    const CappedExponential e = capped_exponential(q);
-    r.energy += p_.k1_Pa / (2 * p_.k2) * (e.value - 1);
-    r.d4[i] = p_.k1_Pa * s * e.first;
-    r.d44[i] = p_.k1_Pa * (e.first + 2 * p_.k2 * s * s * e.second);
-    r.exponent = std::max(r.exponent, q);
+  const double aligned = 1 - 3 * p_.kappa;
+  for (int i = 0; i < families; ++i) {
+    const double stretched = at.i4[i] > 1 ? aligned : 0;  // dE/dI4
+    const FibreExponential w =
+        fibre_exponential(p_.k1_Pa, p_.k2, p_.kappa * (at.i1 - 3) + stretched * (at.i4[i] - 1));
+    r.energy += w.energy;
+    r.d1 += p_.kappa * w.first;
+    r.d11 += p_.kappa * p_.kappa * w.second;
+    r.d4[i] = stretched * w.first;
+    r.d44[i] = stretched * stretched * w.second;
+    r.d14[i] = p_.kappa * stretched * w.second;
+    r.exponent = std::max(r.exponent, w.exponent);
   }
   return r;
 }

@@ -1,14 +1,11 @@
 #include "materials/neo_hookean.hpp"
 
-#include <cmath>
-
-#include "core/errors.hpp"
+#include "materials/checks.hpp"
 
 namespace valsalva::materials {
 
 NeoHookean::NeoHookean(double shear_modulus_Pa) : mu_(shear_modulus_Pa) {
-  if (!(std::isfinite(mu_) && mu_ > 0))
-    throw InputError("material neo-hookean: shear modulus (Pa) = {}; expected a positive number", mu_);
+  require_positive("neo-hookean", "shear modulus (Pa)", mu_);
 }
 
 InvariantResponse NeoHookean::derivatives(const Invariants& at, int, double factor) const {
