@@ -36,6 +36,7 @@ class Dilator : public structure::ForceTerm {
   double add_forces(const structure::Configuration& now, structure::Forces& out) const override;
   void add_stiffness_bound(const structure::Configuration& now,
                            structure::StiffnessBound& out) const override;
+  bool stiffness_is_abrupt() const override { return true; }
   double penetration_mm(const structure::Configuration& now) const;
 
  private:

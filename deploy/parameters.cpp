@@ -44,6 +44,7 @@ Parameters read_parameters(const Case& scene) {
   p.candidates = {scene.real("contact.modulus_kPa") * units::pa_per_kPa, scene.real("contact.rest_factor"),
                   scene.real("contact.wide_skin_mm"), scene.real("contact.near_skin_mm")};
   p.thickness_fraction = scene.real("contact.tissue_compressed_thickness_fraction");
+  p.native_self_distance = scene.real("deploy.native_self_distance_mm");
   p.tie_stiffness = scene.real("deploy.tie_stiffness_N_per_mm") * units::uN_per_N;
   p.penetration_tolerance = scene.real("deploy.penetration_tolerance_mm");
   p.apposition_gap = scene.real("deploy.apposition_gap_mm");

@@ -24,6 +24,7 @@ struct Parameters {
   double hold_stiffness = 0;
   double step_s = 1e-5;
   double friction = 0, wall_stiffness = 0, tissue_wall_stiffness = 0;
+  double native_self_distance = 0.25;  ///< mm
   double tie_stiffness = 0;
   contact::Law law = contact::Law::barrier;
   contact::CandidateParameters candidates;

@@ -136,6 +136,7 @@ void Simulation::add_contact(const Inputs& in, const Parameters& p, bool device)
   // Struts move apart from each other, and the device's leaflets lie inside frame and skirt.
   if (device) candidates.set_pair("frame", "frame", {false});
   if (device && in.native && has("leaflets")) candidates.set_pair("leaflets", in.native->name, {false});
+  if (in.native) candidates.set_pair(in.native->name, in.native->name, {true, p.native_self_distance});
   contact_ = std::make_shared<contact::BodyContact>(std::move(candidates), p.law);
   terms_.push_back(contact_);
 }
@@ -170,7 +171,7 @@ void Simulation::start(const Parameters& p, double damping) {
   structure::IntegratorSettings settings;
   settings.step_s = p.step_s;
   settings.damping_per_s = damping;
-  settings.scaling_interval = 1;  // contact forms and stiffens within a few steps
+  settings.scaling_interval = 5;  // fibres stiffen within tens of steps
   step_s_ = p.step_s;
   integrator_ = std::make_unique<structure::Integrator>(*system_, terms_, settings);
 }

@@ -3,7 +3,6 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "contact/distance.hpp"
 
@@ -33,31 +32,43 @@ void BodyContact::begin_step(const structure::Configuration& now, double) {
 }
 
 template <class Distance>
-void BodyContact::evaluate(const Points& x, const std::vector<FeaturePair>& pairs, Distance&& distance,
-                           int first_chunk) const {
+void BodyContact::find_active(const Points& x, const std::vector<FeaturePair>& pairs, Distance&& distance,
+                              std::size_t first_chunk) const {
   const int chunks = chunks_for(pairs.size());
 #pragma omp parallel for schedule(dynamic)
   for (int c = 0; c < chunks; ++c) {
-    Chunk& own = chunks_[first_chunk + c];
-    own.active.clear();
-    own.energy = 0;
-    own.report = {};
-    own.report.smallest_distance_mm = std::numeric_limits<double>::infinity();
+    std::vector<Active>& own = active_[first_chunk + c];
+    own.clear();
     const std::size_t end = std::min(pairs.size(), static_cast<std::size_t>(c + 1) * chunk_size);
     for (std::size_t i = static_cast<std::size_t>(c) * chunk_size; i < end; ++i) {
       const FeaturePair& pair = pairs[i];
       const Nearest near = distance(x, pair.node);
       const double d = near.distance, h = pair.contact_distance_mm;
       if (d >= h) continue;
-      own.report.smallest_distance_mm = std::min(own.report.smallest_distance_mm, d);
-      const Pressure p = normal_pressure(law_, pair.modulus_area_uN, d, h);
-      own.energy += p.energy;
-      own.active.push_back({pair.node, near.weight, p.pressure * near.direction});
-      own.report.penetration_mm = std::max(own.report.penetration_mm, h - d);
-      own.report.smallest_ratio = std::min(own.report.smallest_ratio, d / h);
+      own.push_back({pair.node, near.weight, near.direction, d, h, pair.modulus_area_uN,
+                     normal_pressure(law_, pair.modulus_area_uN, d, h)});
     }
-    own.report.active = static_cast<long>(own.active.size());
   }
+}
+
+void BodyContact::find_active(const Points& x) const {
+  if (found_at_ == x) return;
+  const auto& points = candidates_.point_triangle();
+  const auto& edges = candidates_.edge_edge();
+  const std::size_t first = chunks_for(points.size());
+  active_.resize(first + chunks_for(edges.size()));
+  find_active(x, points, nearest_points, 0);
+  find_active(x, edges, nearest_edges, first);
+  found_at_ = x;
+  report_ = {};
+  report_.smallest_distance_mm = candidates_.parameters().near_skin_mm;
+  for (const auto& chunk : active_)
+    for (const Active& pair : chunk) {
+      ++report_.active;
+      report_.penetration_mm = std::max(report_.penetration_mm, pair.contact_distance_mm - pair.distance_mm);
+      report_.smallest_ratio = std::min(report_.smallest_ratio, pair.distance_mm / pair.contact_distance_mm);
+      report_.smallest_distance_mm = std::min(report_.smallest_distance_mm, pair.distance_mm);
+    }
 }
 
 // Every thread adds to its own nodes only, each node's contributions in the order of the pairs.
@@ -68,50 +79,36 @@ void BodyContact::scatter(Points& force) const {
     const int threads = omp_get_num_threads(), own = omp_get_thread_num();
     const int begin = static_cast<int>(static_cast<long>(nodes) * own / threads);
     const int end = static_cast<int>(static_cast<long>(nodes) * (own + 1) / threads);
-    for (const Chunk& chunk : chunks_)
-      for (const Active& active : chunk.active)
+    for (const auto& chunk : active_)
+      for (const Active& pair : chunk)
         for (int k = 0; k < 4; ++k) {
-          const int node = active.node[k];
-          if (node >= begin && node < end) force[node] += active.weight[k] * active.force;
+          const int node = pair.node[k];
+          if (node >= begin && node < end) force[node] += pair.weight[k] * pair.at.pressure * pair.direction;
         }
   }
 }
 
 double BodyContact::add_forces(const structure::Configuration& now, structure::Forces& out) const {
-  const auto& points = candidates_.point_triangle();
-  const auto& edges = candidates_.edge_edge();
-  const int first = chunks_for(points.size());
-  chunks_.resize(first + chunks_for(edges.size()));
-  evaluate(now.x, points, nearest_points, 0);
-  evaluate(now.x, edges, nearest_edges, first);
+  find_active(now.x);
   scatter(out.force);
-  double energy = 0;
-  report_ = {};
-  report_.smallest_distance_mm = candidates_.parameters().near_skin_mm;
-  for (const Chunk& chunk : chunks_) {
-    energy += chunk.energy;
-    report_.active += chunk.report.active;
-    report_.penetration_mm = std::max(report_.penetration_mm, chunk.report.penetration_mm);
-    report_.smallest_ratio = std::min(report_.smallest_ratio, chunk.report.smallest_ratio);
-    report_.smallest_distance_mm = std::min(report_.smallest_distance_mm, chunk.report.smallest_distance_mm);
-  }
+  double energy = 0;  // pair by pair: the sum must not depend on how the lists are cut into chunks
+  for (const auto& chunk : active_)
+    for (const Active& pair : chunk) energy += pair.at.energy;
   return energy;
 }
 
 void BodyContact::add_stiffness_bound(const structure::Configuration& now,
                                       structure::StiffnessBound& out) const {
   constexpr double approach = 0.8;
-  const auto add = [&](const FeaturePair& pair, const Nearest& near) {
-    // Pairs out of contact may or may not be listed, depending on the list's age: they must not count.
-    if (near.distance >= pair.contact_distance_mm) return;
-    const double d = approach * near.distance;
-    const Pressure p = normal_pressure(law_, pair.modulus_area_uN, d, pair.contact_distance_mm);
-    const double lateral = p.pressure / std::max(d, 1e-3 * pair.contact_distance_mm);
-    for (int k = 0; k < 4; ++k)
-      out.translation[pair.node[k]] += 2 * std::abs(near.weight[k]) * (p.stiffness + lateral);
-  };
-  for (const auto& pair : candidates_.point_triangle()) add(pair, nearest_points(now.x, pair.node));
-  for (const auto& pair : candidates_.edge_edge()) add(pair, nearest_edges(now.x, pair.node));
+  find_active(now.x);
+  for (const auto& chunk : active_)
+    for (const Active& pair : chunk) {
+      const double d = approach * pair.distance_mm, h = pair.contact_distance_mm;
+      const Pressure p = normal_pressure(law_, pair.modulus_area_uN, d, h);
+      const double lateral = p.pressure / std::max(d, 1e-3 * h);
+      for (int k = 0; k < 4; ++k)
+        out.translation[pair.node[k]] += 2 * std::abs(pair.weight[k]) * (p.stiffness + lateral);
+    }
 }
 
 double BodyContact::penetration_mm(const Points& x, const std::string& body, const std::string& other) const {
@@ -128,20 +125,18 @@ double BodyContact::penetration_mm(const Points& x, const std::string& body, con
   return most;
 }
 
-int BodyContact::limit_velocities(structure::System& system, double dt_s) const {
+int BodyContact::limit_velocities(structure::System& system, double dt_s) {
   structure::Configuration& now = system.state;
+  candidates_.update(now.x);
+  find_active(now.x);
+  const double free = candidates_.parameters().near_skin_mm;
   double fastest = 0;
   for (const Vec3& v : now.v) fastest = std::max(fastest, v.squaredNorm());
-  const double floor_mm = std::min(report_.smallest_distance_mm, candidates_.parameters().near_skin_mm);
-  if (std::sqrt(fastest) * dt_s <= 0.5 * guard_fraction * floor_mm) return 0;
-  std::vector<double> room(now.x.size(), candidates_.parameters().near_skin_mm);
-  const auto narrow = [&](const FeaturePair& pair, double distance) {
-    if (distance >= pair.contact_distance_mm) return;
-    for (int node : pair.node) room[node] = std::min(room[node], distance);
-  };
-  for (const auto& pair : candidates_.point_triangle())
-    narrow(pair, nearest_points(now.x, pair.node).distance);
-  for (const auto& pair : candidates_.edge_edge()) narrow(pair, nearest_edges(now.x, pair.node).distance);
+  if (std::sqrt(fastest) * dt_s <= guard_fraction * std::min(report_.smallest_distance_mm, free)) return 0;
+  std::vector<double> room(now.x.size(), free);
+  for (const auto& chunk : active_)
+    for (const Active& pair : chunk)
+      for (int node : pair.node) room[node] = std::min(room[node], pair.distance_mm);
   int slowed = 0;
   for (std::size_t i = 0; i < now.v.size(); ++i) {
     const double move = now.v[i].norm() * dt_s, allowed = guard_fraction * room[i];

@@ -34,10 +34,15 @@ class BodyContact : public structure::ForceTerm {
   /// pair approaches by a fifth.
   void add_stiffness_bound(const structure::Configuration& now,
                            structure::StiffnessBound& out) const override;
+  bool stiffness_is_abrupt() const override { return true; }
 
   const ContactReport& report() const { return report_; }
   const Candidates& candidates() const { return candidates_; }
-  Candidates& candidates() { return candidates_; }
+  /// For changing the settings.
+  Candidates& candidates() {
+    found_at_.clear();
+    return candidates_;
+  }
 
   /// Largest h - d of the pairs of two bodies at these positions, 0 when none is in contact.
   double penetration_mm(const Points& x, const std::string& body, const std::string& other) const;
@@ -46,27 +51,30 @@ class BodyContact : public structure::ForceTerm {
   /// pairs in one step, hence no pair can pass through itself. Shortens velocities where needed; returns how
   /// many nodes were slowed. Held nodes keep their velocity. Call after a step, with the step that comes
   /// next.
-  int limit_velocities(structure::System& system, double dt_s) const;
+  int limit_velocities(structure::System& system, double dt_s);
 
  private:
+  /// A pair in contact.
   struct Active {
     std::array<int, 4> node;
     std::array<double, 4> weight;
-    Vec3 force;
+    Vec3 direction;
+    double distance_mm, contact_distance_mm, modulus_area_uN;
+    Pressure at;
   };
-  struct Chunk {
-    std::vector<Active> active;
-    double energy = 0;
-    ContactReport report;
-  };
+  /// Finds the pairs in contact at x, unless x is where they were found last.
+  void find_active(const Points& x) const;
   template <class Distance>
-  void evaluate(const Points& x, const std::vector<FeaturePair>& pairs, Distance&& distance,
-                int first_chunk) const;
+  void find_active(const Points& x, const std::vector<FeaturePair>& pairs, Distance&& distance,
+                   std::size_t first_chunk) const;
   void scatter(Points& force) const;
 
   Candidates candidates_;
   Law law_;
-  mutable std::vector<Chunk> chunks_;  // scratch
+  // The pairs in contact at found_at_, in the order of the lists: forces, bounds and the guard of one
+  // configuration share them.
+  mutable std::vector<std::vector<Active>> active_;
+  mutable Points found_at_;
   mutable ContactReport report_;
 };
 

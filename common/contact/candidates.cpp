@@ -43,16 +43,44 @@ double largest_motion(const Points& x, const Points& from) {
   return std::sqrt(most);
 }
 
-template <std::size_t n>
-Box box_around(const Points& x, const std::array<int, n>& nodes, double margin) {
-  Box box{x[nodes[0]], x[nodes[0]]};
-  for (int node : nodes) {
-    box.low = box.low.cwiseMin(x[node]);
-    box.high = box.high.cwiseMax(x[node]);
+const std::array<int, 1> nodes_of(const Vertex& vertex) {
+  return {vertex.node};
+}
+template <class Feature>
+const auto& nodes_of(const Feature& feature) {
+  return feature.node;
+}
+
+/// Boxes around features, each with its share of the contact distance and of the skin.
+template <class Feature>
+std::vector<Box> boxes_around(const Points& x, const std::vector<Feature>& features,
+                              const std::vector<int>& chosen, double distance, double skin) {
+  std::vector<Box> boxes;
+  boxes.reserve(chosen.size());
+  for (int i : chosen) {
+    const auto& nodes = nodes_of(features[i]);
+    Box box{x[nodes[0]], x[nodes[0]]};
+    for (int node : nodes) {
+      box.low = box.low.cwiseMin(x[node]);
+      box.high = box.high.cwiseMax(x[node]);
+    }
+    const double margin = (distance > 0 ? 0.5 * distance : features[i].radius_mm) + 0.5 * skin;
+    box.low.array() -= margin;
+    box.high.array() += margin;
+    boxes.push_back(box);
   }
-  box.low.array() -= margin;
-  box.high.array() += margin;
-  return box;
+  return boxes;
+}
+
+template <class Feature>
+std::vector<std::vector<int>> by_body(const std::vector<Feature>& features, std::size_t bodies) {
+  std::vector<std::vector<int>> lists(bodies);
+  for (std::size_t i = 0; i < features.size(); ++i) lists[features[i].body].push_back(static_cast<int>(i));
+  return lists;
+}
+
+void append(std::vector<FeaturePair>& all, const std::vector<FeaturePair>& more) {
+  all.insert(all.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -78,15 +106,6 @@ void Candidates::forget() {
   wide_at_.clear();
 }
 
-double Candidates::largest_distance() const {
-  double radius = 0, distance = 0;
-  for (const auto& v : mesh_.vertices()) radius = std::max(radius, v.radius_mm);
-  for (const auto& e : mesh_.edges()) radius = std::max(radius, e.radius_mm);
-  for (const auto& f : mesh_.faces()) radius = std::max(radius, f.radius_mm);
-  for (const auto& s : settings_) distance = std::max(distance, s.distance_mm);
-  return std::max(2 * radius, distance);
-}
-
 void Candidates::update(const Points& x) {
   if (wide_at_.size() != x.size() || largest_motion(x, wide_at_) >= 0.5 * parameters_.wide_skin_mm) {
     update_wide(x);
@@ -96,68 +115,97 @@ void Candidates::update(const Points& x) {
   }
 }
 
+bool Candidates::shares_node(const std::array<int, 4>& node, int first) const {
+  for (int i = 0; i < first; ++i)
+    for (int j = first; j < 4; ++j)
+      if (mesh_.identity(node[i]) == mesh_.identity(node[j])) return true;
+  return false;
+}
+
+bool Candidates::complete(const Points& x, int body, int other, double radii, double area, Distance distance,
+                          FeaturePair& pair) const {
+  const BodyPairSettings& own = settings(body, other);
+  double h = own.distance_mm > 0 ? own.distance_mm : radii;
+  pair.wide_distance_mm = distance(x, pair);
+  if (pair.wide_distance_mm >= h + parameters_.wide_skin_mm) return false;
+  if (mesh_.bodies()[body].group == mesh_.bodies()[other].group)
+    h = std::min(h, parameters_.rest_factor * distance(mesh_.reference(), pair));
+  pair.contact_distance_mm = h;
+  pair.modulus_area_uN = (own.modulus_Pa > 0 ? own.modulus_Pa : parameters_.modulus_Pa) * area;
+  return h > 1e-6;
+}
+
 void Candidates::update_wide(const Points& x) {
   ++wide_updates_;
   wide_at_ = x;
+  wide_point_.clear();
+  wide_edge_.clear();
+  const int bodies = static_cast<int>(mesh_.bodies().size());
+  const auto vertices = by_body(mesh_.vertices(), bodies), edges = by_body(mesh_.edges(), bodies),
+             faces = by_body(mesh_.faces(), bodies);
+  for (int a = 0; a < bodies; ++a)
+    for (int b = a; b < bodies; ++b) {
+      if (!settings(a, b).active) continue;
+      append(wide_point_, points_near_faces(x, vertices[a], faces[b], settings(a, b).distance_mm));
+      if (a != b)
+        append(wide_point_, points_near_faces(x, vertices[b], faces[a], settings(a, b).distance_mm));
+      append(wide_edge_, edges_near_edges(x, edges[a], edges[b], settings(a, b).distance_mm, a == b));
+    }
+}
+
+std::vector<FeaturePair> Candidates::points_near_faces(const Points& x, const std::vector<int>& vertices,
+                                                       const std::vector<int>& faces, double distance) const {
   const double skin = parameters_.wide_skin_mm;
-  const double margin = 0.5 * (largest_distance() + skin);
-  const auto shares_node = [&](const std::array<int, 4>& node, int first) {
-    for (int i = 0; i < first; ++i)
-      for (int j = first; j < 4; ++j)
-        if (mesh_.identity(node[i]) == mesh_.identity(node[j])) return true;
-    return false;
-  };
-  const auto complete = [&](FeaturePair& pair, int body, int other, double radii, double area,
-                            double (*distance)(const Points&, const FeaturePair&)) {
-    const auto& own = settings(body, other);
-    if (!own.active) return false;
-    double h = own.distance_mm > 0 ? own.distance_mm : radii;
-    if (distance(x, pair) >= h + skin) return false;
-    if (mesh_.bodies()[body].group == mesh_.bodies()[other].group)
-      h = std::min(h, parameters_.rest_factor * distance(mesh_.reference(), pair));
-    pair.contact_distance_mm = h;
-    pair.modulus_area_uN = (own.modulus_Pa > 0 ? own.modulus_Pa : parameters_.modulus_Pa) * area;
-    return h > 1e-6;
-  };
-
-  std::vector<Box> points, faces, edges;
-  for (const auto& v : mesh_.vertices()) points.push_back(box_around(x, std::array<int, 1>{v.node}, margin));
-  for (const auto& f : mesh_.faces()) faces.push_back(box_around(x, f.node, margin));
-  for (const auto& e : mesh_.edges()) edges.push_back(box_around(x, e.node, margin));
-
-  const auto point_pairs = overlapping_boxes(points, faces, false);
-  wide_point_ = collect(point_pairs.size(), [&](std::size_t i, FeaturePair& pair) {
-    const auto& v = mesh_.vertices()[point_pairs[i][0]];
-    const auto& f = mesh_.faces()[point_pairs[i][1]];
+  const auto found = overlapping_boxes(boxes_around(x, mesh_.vertices(), vertices, distance, skin),
+                                       boxes_around(x, mesh_.faces(), faces, distance, skin), false);
+  return collect(found.size(), [&](std::size_t i, FeaturePair& pair) {
+    pair.first = vertices[found[i][0]];
+    pair.second = faces[found[i][1]];
+    const Vertex& v = mesh_.vertices()[pair.first];
+    const Face& f = mesh_.faces()[pair.second];
     pair.node = {v.node, f.node[0], f.node[1], f.node[2]};
-    pair.first = point_pairs[i][0];
-    pair.second = point_pairs[i][1];
     return !shares_node(pair.node, 1) &&
-           complete(pair, v.body, f.body, v.radius_mm + f.radius_mm, v.area_mm2, distance_of_points);
+           complete(x, v.body, f.body, v.radius_mm + f.radius_mm, v.area_mm2, distance_of_points, pair);
   });
-  const auto edge_pairs = overlapping_boxes(edges, edges, true);
-  wide_edge_ = collect(edge_pairs.size(), [&](std::size_t i, FeaturePair& pair) {
-    const auto& a = mesh_.edges()[edge_pairs[i][0]];
-    const auto& b = mesh_.edges()[edge_pairs[i][1]];
+}
+
+std::vector<FeaturePair> Candidates::edges_near_edges(const Points& x, const std::vector<int>& edges,
+                                                      const std::vector<int>& others, double distance,
+                                                      bool same) const {
+  const double skin = parameters_.wide_skin_mm;
+  const auto found = overlapping_boxes(boxes_around(x, mesh_.edges(), edges, distance, skin),
+                                       boxes_around(x, mesh_.edges(), others, distance, skin), same);
+  return collect(found.size(), [&](std::size_t i, FeaturePair& pair) {
+    pair.first = edges[found[i][0]];
+    pair.second = others[found[i][1]];
+    const ContactEdge& a = mesh_.edges()[pair.first];
+    const ContactEdge& b = mesh_.edges()[pair.second];
     pair.node = {a.node[0], a.node[1], b.node[0], b.node[1]};
-    pair.first = edge_pairs[i][0];
-    pair.second = edge_pairs[i][1];
-    return !shares_node(pair.node, 2) && complete(pair, a.body, b.body, a.radius_mm + b.radius_mm,
-                                                  std::min(a.area_mm2, b.area_mm2), distance_of_edges);
+    return !shares_node(pair.node, 2) && complete(x, a.body, b.body, a.radius_mm + b.radius_mm,
+                                                  std::min(a.area_mm2, b.area_mm2), distance_of_edges, pair);
   });
 }
 
 void Candidates::update_near(const Points& x) {
   ++near_updates_;
   near_at_ = x;
-  const double skin = parameters_.near_skin_mm;
+  std::vector<double> moved(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) moved[i] = (x[i] - wide_at_[i]).norm();
+  // A feature's points move no further than its nodes, so most pairs need no new distance.
+  const auto near = [&](const FeaturePair& pair, int first, Distance distance) {
+    const double reach = pair.contact_distance_mm + parameters_.near_skin_mm;
+    double one = 0, other = 0;
+    for (int k = 0; k < 4; ++k)
+      (k < first ? one : other) = std::max(k < first ? one : other, moved[pair.node[k]]);
+    return pair.wide_distance_mm - one - other < reach && distance(x, pair) < reach;
+  };
   near_point_ = collect(wide_point_.size(), [&](std::size_t i, FeaturePair& pair) {
     pair = wide_point_[i];
-    return distance_of_points(x, pair) < pair.contact_distance_mm + skin;
+    return near(pair, 1, distance_of_points);
   });
   near_edge_ = collect(wide_edge_.size(), [&](std::size_t i, FeaturePair& pair) {
     pair = wide_edge_[i];
-    return distance_of_edges(x, pair) < pair.contact_distance_mm + skin;
+    return near(pair, 2, distance_of_edges);
   });
 }
 

@@ -1,9 +1,9 @@
 // The pairs of features that may touch: found by the broad phase, kept in two lists with Verlet skins.
 //
 // The wide list holds every pair nearer than its contact distance plus the wide skin, the near list is cut
-// from it with the near skin; each is renewed once a node has moved by half its skin. Both are sorted by the
-// features' indices, and pairs out of contact add nothing, so that no result depends on when they were
-// renewed.
+// from it with the near skin; each is renewed once a node has moved by half its skin. Both are sorted by pair
+// of bodies and the features' indices, and pairs out of contact add nothing, so that no result depends on
+// when they were renewed.
 //
 // Left out: features that share a node (sewn nodes count as one). Features of one group of bodies (of one
 // device, which has one reference shape) get at most `rest_factor` times their distance in the reference
@@ -35,6 +35,7 @@ struct FeaturePair {
   int first, second;           ///< indices into vertices and faces, or edges and edges
   double contact_distance_mm;  ///< h
   double modulus_area_uN;      ///< K A, A the smaller of the two features' areas (the vertex's with a face)
+  double wide_distance_mm;     ///< distance when the wide list was made
 };
 
 class Candidates {
@@ -54,10 +55,18 @@ class Candidates {
   long near_updates() const { return near_updates_; }
 
  private:
+  using Distance = double (*)(const Points&, const FeaturePair&);
   const BodyPairSettings& settings(int body, int other) const;
+  bool shares_node(const std::array<int, 4>& node, int first) const;
+  /// Fills in what depends on distance and bodies; false when the pair is out of reach.
+  bool complete(const Points& x, int body, int other, double radii, double area, Distance distance,
+                FeaturePair& pair) const;
+  std::vector<FeaturePair> points_near_faces(const Points& x, const std::vector<int>& vertices,
+                                             const std::vector<int>& faces, double distance) const;
+  std::vector<FeaturePair> edges_near_edges(const Points& x, const std::vector<int>& edges,
+                                            const std::vector<int>& others, double distance, bool same) const;
   void update_wide(const Points& x);
   void update_near(const Points& x);
-  double largest_distance() const;
   void forget();
 
   CollisionMesh mesh_;

@@ -30,6 +30,7 @@ class ToolContact : public structure::ForceTerm {
   double add_forces(const structure::Configuration& now, structure::Forces& out) const override;
   void add_stiffness_bound(const structure::Configuration& now,
                            structure::StiffnessBound& out) const override;
+  bool stiffness_is_abrupt() const override { return true; }
   structure::Snapshot save() const override { return tethers_.save(); }
   void restore(const structure::Snapshot& snapshot) override { tethers_.restore(snapshot, name_); }
 

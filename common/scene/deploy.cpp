@@ -39,6 +39,10 @@ void declare_deploy(Schema& schema) {
   schema.real(
       "deploy.contact_modulus_kPa", 200, positive(),
       "Stiffness scale of contact between bodies (docs of contact; reached at half the contact distance)");
+  schema.real(
+      "deploy.native_self_distance_mm", 0.25, positive(),
+      "Distance at which folds of the native leaflets meet each other: half their edge length, since a "
+      "larger one makes every node a neighbour of its own surroundings");
   schema.real("deploy.tie_stiffness_N_per_mm", 5, positive(), "Stiffness of a stitch");
   schema.real("deploy.penetration_tolerance_mm", 0.2, positive(),
               "Largest overlap that counts as touching: about half a tissue thickness (assumed)");

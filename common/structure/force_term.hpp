@@ -23,6 +23,10 @@ class ForceTerm {
   /// integrator takes the stable step, dt <= 2 / sqrt(max_i k_i / m_i), or the mass scaling for a given step.
   virtual void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const = 0;
 
+  /// True where that bound changes from one step to the next, as when contact forms: it is then taken anew in
+  /// every step, not only when all bounds are.
+  virtual bool stiffness_is_abrupt() const { return false; }
+
   /// History that a bitwise restart needs; nothing for a term that depends on the configuration alone.
   virtual Snapshot save() const { return {}; }
   virtual void restore(const Snapshot&) {}

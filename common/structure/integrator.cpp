@@ -61,7 +61,7 @@ Integrator::Integrator(System& system, std::vector<std::shared_ptr<ForceTerm>> t
 
 void Integrator::step() {
   for (const auto& term : terms_) term->begin_step(system_.state, settings_.step_s);
-  if (steps_ % settings_.scaling_interval == 0) scale_masses();
+  bound_stiffness();
   evaluate_forces();
   if (steps_ == 0) {
     energies_.stored_at_start = energies_.stored;
@@ -87,9 +87,23 @@ void Integrator::evaluate_forces() {
   }
 }
 
+void Integrator::bound_stiffness() {
+  const bool all = steps_ % settings_.scaling_interval == 0;
+  const bool any =
+      std::any_of(terms_.begin(), terms_.end(), [](auto& t) { return t->stiffness_is_abrupt(); });
+  if (!all && !any) return;
+  if (all) {
+    smooth_.reset(system_.nodes(), system_.rotational_nodes());
+    for (const auto& term : terms_)
+      if (!term->stiffness_is_abrupt()) term->add_stiffness_bound(system_.state, smooth_);
+  }
+  bound_ = smooth_;
+  for (const auto& term : terms_)
+    if (term->stiffness_is_abrupt()) term->add_stiffness_bound(system_.state, bound_);
+  scale_masses();
+}
+
 void Integrator::scale_masses() {
-  bound_.reset(system_.nodes(), system_.rotational_nodes());
-  for (const auto& term : terms_) term->add_stiffness_bound(system_.state, bound_);
   const double reach = settings_.step_s / (2 * settings_.safety);
   const double before = kinetic_energy();
   for (std::size_t a = 0; a < mass_.size(); ++a) {
@@ -207,6 +221,8 @@ Snapshot Integrator::save() const {
   s["rotation"];  // present even when there are no rotations
   s["mass"] = mass_;
   s["inertia"] = inertia_;
+  s["smooth_bound"] = smooth_.translation;
+  s["smooth_bound_rotation"] = smooth_.rotation;
   s["clock"] = {now.time_s, static_cast<double>(steps_), settings_.damping_per_s};
   s["energies"] = {energies_.kinetic,          energies_.stored,       energies_.stored_at_start,
                    energies_.kinetic_at_start, energies_.damping_work, energies_.support_work,
@@ -229,6 +245,9 @@ void Integrator::restore(const Snapshot& s) {
     now.rotation[r] = Eigen::Quaterniond(q[4 * r], q[4 * r + 1], q[4 * r + 2], q[4 * r + 3]);
   mass_ = entry(s, "mass", nodes);
   inertia_ = entry(s, "inertia", turning);
+  const bool begun = s.count("smooth_bound") && !s.at("smooth_bound").empty();  // not before the first step
+  smooth_.translation = entry(s, "smooth_bound", begun ? nodes : 0);
+  smooth_.rotation = entry(s, "smooth_bound_rotation", begun ? turning : 0);
   const std::vector<double>& clock = entry(s, "clock", 3);
   now.time_s = clock[0];
   steps_ = static_cast<long>(clock[1]);

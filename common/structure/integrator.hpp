@@ -4,8 +4,8 @@
 // rotations alike with R+ = exp(dt omega+) R; alpha the mass-proportional damping. Velocities stand half a
 // step behind positions. Stable for dt <= 2/sqrt(max k_i/m_i), k_i from the terms' stiffness bounds; with a
 // target step, nodal masses and inertias are raised where needed (mass scaling), every `scaling_interval`
-// steps anew. Sources: Belytschko, Liu and Moran 2000, section 6.2; Simo and Vu-Quoc 1991 for the rotation
-// update.
+// steps anew, in every step for terms whose stiffness is abrupt (contact). Sources: Belytschko, Liu and Moran
+// 2000, section 6.2; Simo and Vu-Quoc 1991 for the rotation update.
 //
 // Energy: kinetic (with scaled masses), stored (sum of the terms' energies), work of damping, of loads,
 // contact friction and supports; `Energies::imbalance` is zero up to the truncation error when all forces
@@ -74,6 +74,7 @@ class Integrator {
 
  private:
   void evaluate_forces();
+  void bound_stiffness();
   void scale_masses();
   void move_nodes();
   void turn_nodes();
@@ -83,7 +84,7 @@ class Integrator {
   std::vector<std::shared_ptr<ForceTerm>> terms_;
   IntegratorSettings settings_;
   Forces forces_;
-  StiffnessBound bound_;
+  StiffnessBound smooth_, bound_;  // without and with the abrupt terms
   std::vector<double> mass_, inertia_;
   std::vector<double> stored_of_;
   Energies energies_;
