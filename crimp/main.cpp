@@ -12,6 +12,7 @@
 #include "core/progress.hpp"
 #include "output.hpp"
 #include "scene/scene.hpp"
+#include "structure/threads.hpp"
 
 namespace {
 
@@ -91,6 +92,7 @@ Estimate estimate(const Case& scene, int) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  valsalva::structure::wait_passively(argv);
   return stage_main(argc, argv,
                     {"crimp",
                      "Closes the device into its sheath: explicit dynamics with contact",

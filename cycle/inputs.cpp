@@ -84,6 +84,8 @@ Leaflets read_leaflets(const state::State& file, const std::string& name, double
   Leaflets l;
   l.name = name;
   l.points = mesh.points;
+  l.rest =
+      mesh.point_data.count("mounted") ? mesh.point_data.at("mounted").points(name + "/mounted") : l.points;
   l.mesh.triangles = mesh.triangles(name);
   l.mesh.reference = field(mesh.point_data, "reference", name, file).points(name + "/reference");
   l.mesh.thickness_mm = field(mesh.point_data, "thickness_mm", name, file).doubles(name + "/thickness_mm");

@@ -14,6 +14,7 @@ namespace valsalva::cycle {
 struct Leaflets {
   std::string name;  ///< "leaflets" or "native_leaflets"
   Points points;     ///< at the start
+  Points rest;       ///< where neighbours do not repel: as mounted on the frame, or as at the start
   structure::ShellMesh mesh;
   std::vector<std::uint8_t> attached;
   std::vector<int> leaflet;      ///< of each node

@@ -20,8 +20,8 @@ constexpr const char* rescue_prefix = "rescue/";
 std::unique_ptr<coupling::ImmersedShell> shell_of(MPI_Comm comm, const Leaflets& l, const Parameters& p) {
   structure::Shell shell(l.mesh, std::make_shared<materials::Hgo>(p.tissue.law),
                          structure::Bending{p.tissue.bending_modulus_Pa, 0.5});
-  return std::make_unique<coupling::ImmersedShell>(comm, std::move(shell), l.points, l.attached, l.leaflet,
-                                                   p.repulsion);
+  return std::make_unique<coupling::ImmersedShell>(comm, std::move(shell), l.rest, l.points, l.attached,
+                                                   l.leaflet, p.repulsion);
 }
 
 /// Everybody gets what rank 0 has.
@@ -75,6 +75,9 @@ Simulation::Simulation(MPI_Comm comm, const Inputs& in, const Parameters& p) : c
 
 void Simulation::advance() {
   const double left = p_.end_s - time_s_;
+  if (system_->shell())
+    system_->shell()->set_repulsion_growth(
+        p_.initialisation_s > 0 ? std::min(1.0, time_s_ / p_.initialisation_s) : 1.0);
   const double dt = system_->plan(left);
   terminals_->advance(time_s_, dt, flow_->flow_through(fluid::End::low),
                       flow_->flow_through(fluid::End::high));

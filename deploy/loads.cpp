@@ -7,28 +7,28 @@ namespace valsalva::deploy {
 
 using structure::Configuration;
 
-HeightHold::HeightHold(std::vector<int> nodes, double target_mm, double stiffness_uN_per_mm,
-                       std::function<double(double)> scale)
-    : nodes_(std::move(nodes)),
+HeightHold::HeightHold(std::vector<int> pushed, std::vector<int> watched, double target_mm,
+                       double stiffness_uN_per_mm, std::function<double(double)> scale)
+    : pushed_(std::move(pushed)),
+      watched_(std::move(watched)),
       target_(target_mm),
       stiffness_(stiffness_uN_per_mm),
       scale_(std::move(scale)) {}
 
 double HeightHold::force_uN(const Configuration& now) const {
   double mean = 0;
-  for (int a : nodes_) mean += now.x[a].z();
-  return scale_(now.time_s) * stiffness_ * (target_ - mean / static_cast<double>(nodes_.size()));
+  for (int a : watched_) mean += now.x[a].z();
+  return scale_(now.time_s) * stiffness_ * (target_ - mean / static_cast<double>(watched_.size()));
 }
 
 double HeightHold::add_forces(const Configuration& now, structure::Forces& out) const {
-  const double force = force_uN(now), scaled = scale_(now.time_s) * stiffness_;
-  if (scaled <= 0) return 0;
-  for (int a : nodes_) out.force[a].z() += force / static_cast<double>(nodes_.size());
-  return 0.5 * force * force / scaled;
+  const double share = force_uN(now) / static_cast<double>(pushed_.size());
+  for (int a : pushed_) out.force[a].z() += share;
+  return 0;
 }
 
 void HeightHold::add_stiffness_bound(const Configuration&, structure::StiffnessBound& out) const {
-  for (int a : nodes_) out.translation[a] += stiffness_ / static_cast<double>(nodes_.size());
+  for (int a : pushed_) out.translation[a] += 2 * stiffness_ / static_cast<double>(pushed_.size());
 }
 
 Dilator::Dilator(std::vector<contact::SurfaceNode> nodes, Vec3 axis_point, Vec3 axis,

@@ -8,10 +8,11 @@
 
 namespace valsalva::deploy {
 
-/// Holds the mean height of some nodes: E = s(t) k/2 (mean z - target)^2. No lateral force, no moment.
+/// Pushes some nodes along z until the mean height of others is at a target: force s(t) k (target - mean z),
+/// shared equally. Struts carry what the edge of the skirt, which is watched, could not. A load: no energy.
 class HeightHold : public structure::ForceTerm {
  public:
-  HeightHold(std::vector<int> nodes, double target_mm, double stiffness_uN_per_mm,
+  HeightHold(std::vector<int> pushed, std::vector<int> watched, double target_mm, double stiffness_uN_per_mm,
              std::function<double(double)> scale);
   std::string name() const override { return "delivery system"; }
   double add_forces(const structure::Configuration& now, structure::Forces& out) const override;
@@ -21,7 +22,7 @@ class HeightHold : public structure::ForceTerm {
   double force_uN(const structure::Configuration& now) const;
 
  private:
-  std::vector<int> nodes_;
+  std::vector<int> pushed_, watched_;
   double target_, stiffness_;
   std::function<double(double)> scale_;
 };

@@ -69,12 +69,10 @@ const ShellBody* find(const std::vector<ShellBody>& bodies, const std::string& n
 
 Placement place(const Inputs& in, const Parameters& p) {
   Placement out;
-  const std::vector<int> inflow = inflow_nodes(in.frame);
   const double strut = strut_radius(*in.frame.network);
-  const double inflow_reference = mean_z(in.frame.network->mesh().reference, inflow);
   const ShellBody* skirt = find(in.tissue, "skirt");
-  const double edge = skirt ? mean_z(skirt->mounted, skirt_edge_nodes(*skirt)) : inflow_reference;
-  out.inflow_target_mm = -p.depth_mm - (edge - inflow_reference);
+  const double edge = skirt ? mean_z(skirt->points, skirt_edge_nodes(*skirt))
+                            : mean_z(in.frame.points, inflow_nodes(in.frame));
 
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Vec3& x : in.frame.points) {
@@ -82,7 +80,7 @@ Placement place(const Inputs& in, const Parameters& p) {
     low = std::min(low, x.z());
     high = std::max(high, x.z());
   }
-  const double shift = out.inflow_target_mm - mean_z(in.frame.points, inflow);
+  const double shift = -p.depth_mm - edge;
   out.low_mm = low + shift;
   out.high_mm = high + shift;
   const Vec3 aim = lumen_centre(in.wall, out.high_mm).normalized();

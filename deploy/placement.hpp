@@ -1,8 +1,7 @@
-// Where the crimped device goes: turned about its axis, its inflow held at the commanded depth.
+// Where the crimped device goes: turned about its axis, the skirt's edge at the commanded depth.
 //
 // The frame shortens while it expands. The depth is commanded for the final skirt edge, so the delivery
-// system holds the inflow's height while the frame opens (loads.hpp), and the crimped device is placed with
-// its inflow there. Where a straight path would touch the wall, the axis is tilted about the annulus's centre
+// system holds that height while the frame opens (loads.hpp), and its outflow comes down. Where a straight path would touch the wall, the axis is tilted about the annulus's centre
 // towards the lumen's centre at the device's upper end, by as little as clears it.
 #pragma once
 
@@ -17,7 +16,6 @@ struct Placement {
   double tilt_deg = 0;
   double radius_mm = 0;            ///< of the crimped device, outside
   double low_mm = 0, high_mm = 0;  ///< its ends along its own axis, in world heights
-  double inflow_target_mm = 0;     ///< mean height at which the inflow nodes are held
 };
 
 /// The frame nodes of the inflow row.

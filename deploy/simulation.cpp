@@ -211,9 +211,12 @@ Simulation Simulation::expansion(const Inputs& in, const Placement& placement, c
         "opening pressure", in.native->shell->mesh().triangles, s.system_->body(in.native->name),
         [=](double t) { return p.open_pressure_Pa * holding(t); }));
   if (p.hold_stiffness > 0) {
-    std::vector<int> nodes = inflow_nodes(in.frame);
-    for (int& a : nodes) a += s.system_->body("frame").offset;
-    s.hold_ = std::make_shared<HeightHold>(nodes, placement.inflow_target_mm, p.hold_stiffness, holding);
+    std::vector<int> pushed = inflow_nodes(in.frame), watched = pushed;
+    for (int& a : pushed) a += s.system_->body("frame").offset;
+    const ShellBody* skirt = find(in.tissue, "skirt");
+    if (skirt) watched = skirt_edge_nodes(*skirt);
+    for (int& a : watched) a += s.system_->body(skirt ? "skirt" : "frame").offset;
+    s.hold_ = std::make_shared<HeightHold>(pushed, watched, -p.depth_mm, p.hold_stiffness, holding);
     s.terms_.push_back(s.hold_);
   }
   if (p.sheath) {

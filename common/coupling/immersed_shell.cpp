@@ -17,14 +17,14 @@ void sum_over_ranks(MPI_Comm comm, int ranks, Points& values) {
 
 }  // namespace
 
-ImmersedShell::ImmersedShell(MPI_Comm comm, structure::Shell shell, Points start,
+ImmersedShell::ImmersedShell(MPI_Comm comm, structure::Shell shell, Points rest, Points start,
                              std::vector<std::uint8_t> clamped, std::vector<int> group,
                              const RepulsionParameters& repulsion)
     : comm_(comm),
       part_{mpi::rank(comm), mpi::size(comm)},
       shell_(std::move(shell)),
       tangent_(shell_, part_),
-      repulsion_(repulsion, start, std::move(group), shell_.lumped_area()),
+      repulsion_(repulsion, std::move(rest), start, std::move(group), shell_.lumped_area()),
       x_(std::move(start)),
       clamped_(std::move(clamped)) {
   VALSALVA_ASSERT(x_.size() == static_cast<std::size_t>(shell_.nodes()) && clamped_.size() == x_.size());

@@ -13,9 +13,11 @@ namespace valsalva::coupling {
 
 class ImmersedShell {
  public:
-  /// clamped: one a node. group: leaflet of each node, for the repulsion between leaflets.
-  ImmersedShell(MPI_Comm comm, structure::Shell shell, Points start, std::vector<std::uint8_t> clamped,
-                std::vector<int> group, const RepulsionParameters& repulsion);
+  /// rest: where neighbours do not repel each other. clamped: one a node. group: leaflet of each node, for
+  /// the repulsion between leaflets.
+  ImmersedShell(MPI_Comm comm, structure::Shell shell, Points rest, Points start,
+                std::vector<std::uint8_t> clamped, std::vector<int> group,
+                const RepulsionParameters& repulsion);
   ImmersedShell(const ImmersedShell&) = delete;
   ImmersedShell& operator=(const ImmersedShell&) = delete;
 
@@ -28,6 +30,8 @@ class ImmersedShell {
   void forces(Points& out);
   /// Force of the shell on what holds its clamped nodes, uN, at the last forces().
   const Vec3& pull_on_clamps() const { return pull_; }
+  /// Ranges of the repulsion, from those of the start (0) to the full ones (1).
+  void set_repulsion_growth(double growth) { repulsion_.set_growth(growth); }
   /// The smallest node distance between leaflets at the last forces().
   double nearest() const { return repulsion_.nearest(); }
 

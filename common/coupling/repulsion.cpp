@@ -7,14 +7,16 @@
 
 namespace valsalva::coupling {
 
-Repulsion::Repulsion(const RepulsionParameters& parameters, Points start, std::vector<int> group,
+Repulsion::Repulsion(const RepulsionParameters& parameters, Points rest, Points start, std::vector<int> group,
                      std::vector<double> area)
     : parameters_(parameters),
+      rest_x_(std::move(rest)),
       start_x_(std::move(start)),
       group_(std::move(group)),
       area_(std::move(area)),
       nearest_(parameters.range_mm) {
-  VALSALVA_ASSERT(group_.size() == area_.size() && start_x_.size() == area_.size());
+  VALSALVA_ASSERT(group_.size() == area_.size() && start_x_.size() == area_.size() &&
+                  rest_x_.size() == area_.size());
   if (!(parameters.range_mm > 0) || !(parameters.pressure_Pa >= 0))
     throw InputError("coupling: repulsion of {} Pa over {} mm; expected a pressure >= 0 and a range > 0",
                      parameters.pressure_Pa, parameters.range_mm);
@@ -72,7 +74,10 @@ double Repulsion::add_forces(const Points& x, Points& force) {
           const Vec3 apart = x[a] - x[b];
           const double square = apart.squaredNorm();
           if (square >= range * range || square == 0) continue;
-          const double d = std::sqrt(square), reach = std::min(range, (start_x_[a] - start_x_[b]).norm());
+          const double d = std::sqrt(square);
+          const double full = std::min(range, (rest_x_[a] - rest_x_[b]).norm());
+          const double begun = std::min(full, (start_x_[a] - start_x_[b]).norm());
+          const double reach = begun + growth_ * (full - begun);
           if (d >= reach) continue;
           const double closeness = 1 - d / reach;
           const double strength = parameters_.pressure_Pa * std::sqrt(area_[a] * area_[b]);

@@ -21,14 +21,14 @@ void declare_deploy(Schema& schema) {
 
   schema.real("deploy.expand_ms", {50, 60, 80, 100}, positive(),
               "Duration of expansion under release damping (all at once; a sheath sets its own time)");
-  schema.real("deploy.release_damping_per_s", 2000, not_negative(),
+  schema.real("deploy.release_damping_per_s", 1000, not_negative(),
               "Mass-proportional damping during expansion: the delivery system's friction (assumed)");
   schema.real("deploy.settle_ms", {40, 60, 80, 100}, positive(),
               "Duration of settling; pressure and hold are taken away over its first half");
   schema.real("deploy.settle_damping_per_s", 300, not_negative(), "Mass-proportional damping while settling");
   schema.real(
       "deploy.hold_stiffness_N_per_mm", 20, not_negative(),
-      "The delivery system holds the mean height of the inflow with this stiffness until settling; 0: free");
+      "The delivery system holds the skirt's edge at its depth with this stiffness until settling; 0: free");
   schema.real("deploy.step_us", {10, 6, 4, 3}, positive(), "Time step; masses are scaled to it");
 
   schema.real("deploy.wall_friction", 0.3, {0, 2}, "Coulomb friction between device and wall (assumed)");

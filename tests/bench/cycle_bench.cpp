@@ -33,9 +33,9 @@ double milliseconds_per_step(double h, int steps) {
   valve.spacing_mm = 0.6 * h;  // nodes at half a cell where the columns are closest
   const test::ValveMesh mesh = test::synthetic_valve(valve);
   flow.solids().mark_segments(flow.solids().add_body("ring"), mesh.shell.reference, mesh.attachment, 0.8 * h);
-  auto shell = std::make_unique<coupling::ImmersedShell>(MPI_COMM_WORLD, test::pericardial_shell(mesh),
-                                                         mesh.shell.reference, mesh.attached, mesh.leaflet,
-                                                         coupling::RepulsionParameters{1e5, 0.6 * h});
+  auto shell = std::make_unique<coupling::ImmersedShell>(
+      MPI_COMM_WORLD, test::pericardial_shell(mesh), mesh.shell.reference, mesh.shell.reference,
+      mesh.attached, mesh.leaflet, coupling::RepulsionParameters{1e5, 0.6 * h});
   coupling::ImmersedFlow system(flow, std::move(shell), {});
   double start = 0;
   for (int n = 0; n < steps + 8; ++n) {

@@ -30,7 +30,7 @@ Cloud cloud() {
 
 TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
   const Cloud c = cloud();
-  Repulsion repulsion({2e4, 0.7}, c.start, c.group, c.area);
+  Repulsion repulsion({2e4, 0.7}, c.start, c.start, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_GT(repulsion.add_forces(c.x, force), 0);
   Vec3 total = Vec3::Zero();
@@ -50,7 +50,7 @@ TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
 
 TEST(Repulsion, TangentIsSymmetricAndBoundsTheSlopeAlongEachPair) {
   const Cloud c = cloud();
-  Repulsion repulsion({2e4, 0.7}, c.start, c.group, c.area);
+  Repulsion repulsion({2e4, 0.7}, c.start, c.start, c.group, c.area);
   Points ignored(c.x.size(), Vec3::Zero()), y(c.x.size()), z(c.x.size());
   repulsion.add_forces(c.x, ignored);
   std::mt19937 random(9);
@@ -82,7 +82,7 @@ TEST(Repulsion, TangentIsSymmetricAndBoundsTheSlopeAlongEachPair) {
 
 TEST(Repulsion, FindsEveryPair) {
   const Cloud c = cloud();
-  Repulsion repulsion({1e4, 0.5}, c.start, c.group, c.area);
+  Repulsion repulsion({1e4, 0.5}, c.start, c.start, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero()), expected = force;
   repulsion.add_forces(c.x, force);
   double nearest = 0.5;
@@ -100,7 +100,7 @@ TEST(Repulsion, FindsEveryPair) {
 
 TEST(Repulsion, LeavesOneLeafletAlone) {
   const Cloud c = cloud();
-  Repulsion repulsion({1e4, 0.5}, c.start, std::vector<int>(c.x.size(), 0), c.area);
+  Repulsion repulsion({1e4, 0.5}, c.start, c.start, std::vector<int>(c.x.size(), 0), c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
   EXPECT_EQ(repulsion.nearest(), 0.5);
@@ -108,9 +108,24 @@ TEST(Repulsion, LeavesOneLeafletAlone) {
 
 TEST(Repulsion, NeighboursAtTheStartDoNotPush) {
   const Cloud c = cloud();
-  Repulsion repulsion({1e4, 0.5}, c.x, c.group, c.area);
+  Repulsion repulsion({1e4, 0.5}, c.x, c.x, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
+}
+
+TEST(Repulsion, RangesGrowFromTheDistanceOfTheStart) {
+  const Points rest{{0, 0, 0}, {5, 0, 0}}, start{{0, 0, 0}, {0.1, 0, 0}};
+  Repulsion repulsion({1e4, 0.5}, rest, start, {0, 1}, {1, 1});
+  const auto push = [&](double growth) {
+    Points force(2, Vec3::Zero());
+    repulsion.set_growth(growth);
+    repulsion.add_forces(start, force);
+    EXPECT_EQ(force[0], Vec3(-force[1]));
+    return force[1].x();
+  };
+  EXPECT_EQ(push(0), 0);
+  EXPECT_NEAR(push(0.5), 1e4 * (1 - 0.1 / 0.3), 1e-9);
+  EXPECT_NEAR(push(1), 1e4 * (1 - 0.1 / 0.5), 1e-9);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(ClosedMembrane, KeepsItsVolumeAndCarriesLaplacesPressure) {
   fluid::Flow flow(MPI_COMM_SELF, {{20, 20, 20}, Vec3(-10, -10, -10), h}, closed, {});
   structure::Shell shell(mesh, std::make_shared<materials::NeoHookean>(shear), {});
   auto immersed = std::make_unique<coupling::ImmersedShell>(
-      MPI_COMM_SELF, std::move(shell), start, std::vector<std::uint8_t>(start.size(), 0),
+      MPI_COMM_SELF, std::move(shell), start, start, std::vector<std::uint8_t>(start.size(), 0),
       std::vector<int>(start.size(), -1), coupling::RepulsionParameters{});
   coupling::ImmersedFlow system(flow, std::move(immersed), {});
   const double before = volume(start, mesh.triangles);

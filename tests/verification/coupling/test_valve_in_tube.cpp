@@ -48,9 +48,9 @@ struct Rig {
     flow->solids().set_lumen([](const Vec3& x) { return std::hypot(x.x(), x.y()) - radius; });
     ring = flow->solids().add_body("ring");
     flow->solids().mark_segments(ring, mesh.shell.reference, mesh.attachment, 0.8 * h);
-    auto shell = std::make_unique<coupling::ImmersedShell>(MPI_COMM_SELF, test::pericardial_shell(mesh),
-                                                           mesh.shell.reference, mesh.attached, mesh.leaflet,
-                                                           coupling::RepulsionParameters{1e5, 0.6 * h});
+    auto shell = std::make_unique<coupling::ImmersedShell>(
+        MPI_COMM_SELF, test::pericardial_shell(mesh), mesh.shell.reference, mesh.shell.reference,
+        mesh.attached, mesh.leaflet, coupling::RepulsionParameters{1e5, 0.6 * h});
     system =
         std::make_unique<coupling::ImmersedFlow>(*flow, std::move(shell), coupling::ImmersedFlowSettings{});
   }
