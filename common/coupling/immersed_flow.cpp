@@ -13,7 +13,6 @@ ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> she
       shell_(std::move(shell)),
       settings_(settings),
       transfer_(flow.slab(), settings.kernel),
-      sponge_(flow, settings.sponge),
       power_(shell_ ? shell_->x().size() : 0),
       scratch_(flow.slab()) {}
 
@@ -50,7 +49,6 @@ ImmersedStep ImmersedFlow::step(double at_most) {
   done.dt_s = planned_ > 0 ? planned_ : plan(at_most);
   planned_ = 0;
   flow_.clear_force();
-  sponge_.add_force(flow_, flow_.force());
   if (shell_) {
     shell_->forces(force_);
     transfer_.spread(force_, flow_.force());

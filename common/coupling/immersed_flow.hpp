@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 
-#include "coupling/end_sponge.hpp"
 #include "coupling/immersed_shell.hpp"
 #include "coupling/stability.hpp"
 #include "coupling/transfer.hpp"
@@ -20,7 +19,6 @@ namespace valsalva::coupling {
 struct ImmersedFlowSettings {
   Kernel kernel{Basis::ib4, Basis::ib4};
   StepLimits limits;
-  SpongeParameters sponge;
   int probe_interval = 8;        ///< steps between estimates of lambda_max
   int probe_iterations = 2;      ///< power iterations each
   int first_iterations = 40;     ///< at the start, from a random direction
@@ -64,7 +62,6 @@ class ImmersedFlow {
   std::unique_ptr<ImmersedShell> shell_;
   ImmersedFlowSettings settings_;
   Transfer transfer_;
-  EndSponge sponge_;
   PowerIteration power_;
   fluid::FaceField scratch_;
   Points force_, velocity_;

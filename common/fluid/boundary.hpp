@@ -3,9 +3,17 @@
 //   periodic   both sides of a direction
 //   slip       normal velocity 0, no shear
 //   wall       normal velocity 0, tangential velocity that of the wall (`velocity`)
-//   open       (z only) pressure prescribed on the side; velocity leaves with zero gradient; where it enters,
-//              tangential velocity 0 and neither convection nor viscosity on the face itself
+//   open       (z only) a reservoir at the prescribed pressure p stands beyond the side (below)
 //   inflow     (z only) normal velocity prescribed face by face, tangential velocity 0
+//
+// Open sides. What leaves does so against the pressure p, with zero gradient of velocity. What enters comes
+// from rest in the reservoir: its total pressure is p, so that face by face
+//   static pressure on the side = p - rho w^2 / 2,    tangential velocity 0,   no viscosity
+// Convection then brings in no kinetic energy: the flow takes at most p Q from the reservoir, and cannot grow
+// without bound. (The velocity-based stabilisation in Bertoglio et al. 2018, "Benchmark problems for
+// numerical treatment of backflow at open boundaries", with beta = 1. With the static pressure prescribed
+// instead, a stream that widens behind the side recovers pressure in proportion to w^2, sucks itself in by it
+// and blows up in finite time: docs/decisions/fluid.md.)
 //
 // Open and inflow sides take effect inside the lumen; what a level set or body covers stays at rest.
 #pragma once

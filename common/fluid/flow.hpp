@@ -8,7 +8,7 @@
 //   N = -div(u u) + nu lap u      (momentum.hpp)
 //
 // Second order in space and in time for the velocity (first order at penalised walls). Explicit: stable for
-// dt (|u|+|v|+|w|)/h below about 0.5 to 1 and dt < h^2 / (12 nu). The open ends keep the prescribed pressure.
+// dt (|u|+|v|+|w|)/h below about 0.5 to 1 and dt < h^2 / (12 nu). What open ends prescribe: boundary.hpp.
 //
 // Order of calls in one step, forces known at its start:
 //     flow.clear_force(); (spread into flow.force()); flow.predict(dt); flow.project(dt);
@@ -82,7 +82,7 @@ class Flow {
   void set_velocity(const std::function<double(int d, const Vec3& x)>& value);
   void set_pressure(const std::function<double(const Vec3& x)>& value);
 
-  /// Pressure on an open end, Pa.
+  /// Pressure of the reservoir at an open end, Pa.
   void set_end_pressure(End end, double pressure) { end_pressure_[static_cast<int>(end)] = pressure; }
   double end_pressure(End end) const { return end_pressure_[static_cast<int>(end)]; }
   /// Velocity along +z on the faces of an inflow end, mm/s. Solid faces stay at rest.

@@ -46,7 +46,6 @@ Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection sc
   for (auto& plane : flux_z_) plane.resize(slab.grid.plane_cells());
   flux_x_.resize(nx + 1);
   flux_y_.resize(nx);
-  keep_.resize(nx);
 }
 
 void Momentum::start_plane_fluxes(const FaceField& velocity) {
@@ -90,11 +89,7 @@ void Momentum::plane(int d, int k, const FaceField& velocity, const Advance& ste
     double* __restrict fz = flux_z_[d].data() + static_cast<std::size_t>(j) * nx;
     double* __restrict n = rate[d].row(j, k);
     double* __restrict out = next[d].row(j, k);
-    [[maybe_unused]] const double* keep = keep_.data();
-    if constexpr (open_end) {
-      const double outward = k == 0 ? -1 : 1;
-      for (int i = 0; i < nx; ++i) keep_[i] = outward * q[i] >= 0 ? 1 : 0;
-    }
+    [[maybe_unused]] const double outward = k == 0 ? -1 : 1;
 #pragma omp simd
     for (int i = 0; i <= nx; ++i) fx[i] = flux(c1, c2, s12, q + i, 1, u + i, sd);
 #pragma omp simd
@@ -105,7 +100,7 @@ void Momentum::plane(int d, int k, const FaceField& velocity, const Advance& ste
       const double laplacian =
           (q[i + 1] + q[i - 1]) + (q[i + sy] + q[i - sy]) + (q[i + sz] + q[i - sz]) - 6 * q[i];
       double now = diffusion * laplacian - per_h * divergence;
-      if constexpr (open_end) now *= keep[i];
+      if constexpr (open_end) now = outward * q[i] < 0 ? outward * per_h * q[i] * q[i] : now;
       fy[i] = above_y;
       fz[i] = above_z;
       out[i] = q[i] + (new_weight * now + old_weight * n[i]) - gradient * (p[i] - p[i - sd]);

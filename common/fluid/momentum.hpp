@@ -8,6 +8,10 @@
 //   1/2,  c2 = 0,    s = 0      second order, conserves kinetic energy
 //
 // The advecting velocities are two-point means, so the scheme as a whole is second order.
+//
+// On a face of an open end through which fluid enters with the speed w_in, N says that it comes from rest in
+// a reservoir of the prescribed pressure (boundary.hpp): over the half cell that belongs to the face
+//   d w_in / dt = -(w_in^2 / 2) / (h / 2)
 #pragma once
 
 #include <string>
@@ -53,7 +57,7 @@ class Momentum {
   Coefficients scheme_;
   double nu_;
   std::array<std::vector<double>, 3> flux_z_;  ///< of each component, through the low side of the next plane
-  std::vector<double> flux_x_, flux_y_, keep_;
+  std::vector<double> flux_x_, flux_y_;
 };
 
 }  // namespace valsalva::fluid

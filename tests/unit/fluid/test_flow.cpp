@@ -98,18 +98,43 @@ TEST(Flow, MomentumOfAPeriodicBoxChangesByTheForceAlone) {
   for (int d = 0; d < 3; ++d) EXPECT_NEAR(change[d], 5e-4 * total[d], 1e-9 * std::abs(5e-4 * total[d]));
 }
 
-TEST(Flow, AcceleratingColumnFollowsNewton) {
-  // Slip tube between two pressures: rho L dw/dt = p_low - p_high, exact for the scheme.
+// A slip tube that opens from a reservoir: rho L dw/dt = p - rho w^2 / 2, so w = w_end tanh(t w_end / (2 L)).
+double column_error(double step_s) {
   Flow flow(MPI_COMM_SELF, tube_grid(8), boundaries_of(Side::slip, Side::slip, Side::open), {});
-  flow.set_end_pressure(End::low, 100);
+  const double pressure = 100, length = 20, density = flow.parameters().density;
+  flow.set_end_pressure(End::low, pressure);
+  double time = 0, largest = 0;
+  const double w_end = std::sqrt(2 * pressure / density);
+  for (int step = 0; time < 0.12; ++step) {
+    const double dt = step == 0 ? 0.1 * step_s : step % 2 ? 1.4 * step_s : 0.6 * step_s;
+    flow.step(dt);
+    time += dt;
+    const double expected = w_end * std::tanh(0.5 * time * w_end / length);
+    largest = std::max(largest, std::abs(flow.flow_through(End::low) / 100 - expected) / w_end);
+    EXPECT_NEAR(flow.mean_pressure(15) / (pressure / 32), 1 - std::pow(expected / w_end, 2), 0.05);
+  }
+  return largest;
+}
+
+TEST(Flow, ColumnFromAReservoirFollowsNewton) {
+  const double coarse = column_error(2e-3), fine = column_error(1e-3);
+  EXPECT_LT(coarse, 3e-4);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
+}
+
+TEST(Flow, ColumnThatStartsFromRestFollowsNewton) {
+  // So slow that no head counts: exact for the scheme.
+  Flow flow(MPI_COMM_SELF, tube_grid(8), boundaries_of(Side::slip, Side::slip, Side::open), {});
+  const double pressure = 1e-7;
+  flow.set_end_pressure(End::low, pressure);
   double time = 0;
   for (double dt : {1e-4, 2e-4, 1e-4, 3e-4}) {
     flow.step(dt);
     time += dt;
   }
-  const double expected = 100 / (1e-3 * 20) * time;
+  const double expected = pressure / (1e-3 * 20) * time;
   EXPECT_NEAR(flow.flow_through(End::low) / 100, expected, 1e-9 * expected);
-  EXPECT_NEAR(flow.mean_pressure(0), 100 * (1 - 0.5 / 16), 1e-8);
+  EXPECT_NEAR(flow.mean_pressure(0), pressure * (1 - 0.5 / 16), 1e-9 * pressure);
 }
 
 TEST(Flow, InflowRateIsCarriedThrough) {
@@ -123,26 +148,6 @@ TEST(Flow, InflowRateIsCarriedThrough) {
   EXPECT_NEAR(flow.flow_through(End::low), 5000, 1e-8);
   EXPECT_NEAR(flow.flow_through(10), 5000, 5);  // what is not in the lumen's faces has leaked into the wall's
   EXPECT_THROW(flow.set_inflow(End::high, [](const Vec3&) { return 1.0; }), InputError);
-}
-
-TEST(Flow, BackflowAtBothEndsStaysBounded) {
-  // Through reversals of about 2 m/s over the whole section (0.9 L/s in a 25 mm tube), from a rough field.
-  Flow flow(MPI_COMM_SELF, tube_grid(16), boundaries_of(Side::slip, Side::slip, Side::open), {});
-  flow.solids().set_lumen(tube);
-  flow.set_velocity(rough);
-  double most = 0, least = 0;
-  const double dt = 2e-5;
-  for (int step = 0; step < 2500; ++step) {
-    const double t = step * dt;
-    flow.set_end_pressure(End::low, 12000 * std::cos(2 * pi * t / 0.02));
-    const StepReport report = flow.step(dt);
-    ASSERT_LT(report.cfl, 1) << "step " << step;
-    const double rate = flow.flow_through(16) / 1000;
-    most = std::max(most, rate);
-    least = std::min(least, rate);
-  }
-  EXPECT_GT(most, 50);
-  EXPECT_LT(least, -50);
 }
 
 TEST(Flow, SavedStateContinuesBitForBit) {
