@@ -12,11 +12,15 @@ struct FibreExponential {
   double exponent = 0;                       ///< k2 e^2
 };
 
-inline FibreExponential fibre_exponential(double k1, double k2, double e) {
-  if (!(e > 0)) return {};
+/// Without the switch.
+inline FibreExponential squared_exponential(double k1, double k2, double e) {
   const double q = k2 * e * e;
   const CappedExponential x = capped_exponential(q);
   return {k1 / (2 * k2) * (x.value - 1), k1 * e * x.first, k1 * (x.first + 2 * k2 * e * e * x.second), q};
+}
+
+inline FibreExponential fibre_exponential(double k1, double k2, double e) {
+  return e > 0 ? squared_exponential(k1, k2, e) : FibreExponential{};
 }
 
 }  // namespace valsalva::materials

@@ -16,9 +16,9 @@ LeeSacks::LeeSacks(const LeeSacksParameters& parameters) : p_(parameters) {
 }
 
 InvariantResponse LeeSacks::derivatives(const Invariants& at, int families, double factor) const {
-  // c1/2 exp(c x^2) is the fibre exponential with k1 = c1 c.
+  // c1/2 exp(c x^2) is the squared exponential with k1 = c1 c.
   InvariantResponse r;
-  const FibreExponential matrix = fibre_exponential(factor * p_.w * p_.c1_Pa * p_.c2, p_.c2, at.i1 - 3);
+  const FibreExponential matrix = squared_exponential(factor * p_.w * p_.c1_Pa * p_.c2, p_.c2, at.i1 - 3);
   r.energy = 0.5 * factor * p_.c0_Pa * (at.i1 - 3) + matrix.energy;
   r.d1 = 0.5 * factor * p_.c0_Pa + matrix.first;
   r.d11 = matrix.second;
