@@ -78,12 +78,14 @@ void Simulation::advance() {
   if (system_->shell())
     system_->shell()->set_repulsion_growth(
         p_.initialisation_s > 0 ? std::min(1.0, time_s_ / p_.initialisation_s) : 1.0);
-  const double dt = system_->plan(left);
-  terminals_->advance(time_s_, dt, flow_->flow_through(fluid::End::low),
-                      flow_->flow_through(fluid::End::high));
-  flow_->set_end_pressure(fluid::End::low, terminals_->low_pressure());
-  flow_->set_end_pressure(fluid::End::high, terminals_->high_pressure());
-  last_ = system_->step(left);
+  const double low = flow_->flow_through(fluid::End::low), high = flow_->flow_through(fluid::End::high);
+  const std::vector<double> before = terminals_->save();
+  last_ = system_->step(left, [&](double dt) {
+    terminals_->restore(before);
+    terminals_->advance(time_s_, dt, low, high);
+    flow_->set_end_pressure(fluid::End::low, terminals_->low_pressure());
+    flow_->set_end_pressure(fluid::End::high, terminals_->high_pressure());
+  });
   time_s_ = last_.dt_s >= left ? p_.end_s : time_s_ + last_.dt_s;
   ++steps_;
   recorder_->after_step(time_s_, last_, *terminals_);

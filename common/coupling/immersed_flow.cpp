@@ -7,6 +7,13 @@
 
 namespace valsalva::coupling {
 
+namespace {
+
+constexpr double planned_share = 0.9;  // of the CFL limit: the speed grows within the step
+constexpr double smallest_cut = 0.1;
+
+}  // namespace
+
 ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> shell,
                            const ImmersedFlowSettings& settings)
     : flow_(flow),
@@ -41,20 +48,31 @@ double ImmersedFlow::plan(double at_most) {
   limits.safety *= caution_;
   limits.cfl *= caution_;
   const double critical = shell_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
-  return planned_ = std::min(at_most, next_step(limits, critical, max_speed_, flow_.grid().h, last_dt_));
+  limits.cfl *= planned_share;
+  return std::min(at_most, next_step(limits, critical, max_speed_, flow_.grid().h, last_dt_));
 }
 
-ImmersedStep ImmersedFlow::step(double at_most) {
+ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double dt)>& set_ends) {
   ImmersedStep done;
-  done.dt_s = planned_ > 0 ? planned_ : plan(at_most);
-  planned_ = 0;
+  done.dt_s = plan(at_most);
   flow_.clear_force();
   if (shell_) {
     shell_->forces(force_);
     transfer_.spread(force_, flow_.force());
   }
-  flow_.predict(done.dt_s);
-  done.fluid = flow_.project(done.dt_s);
+  const double limit = settings_.limits.cfl * caution_;
+  for (;; ++done.repeats) {
+    if (set_ends) set_ends(done.dt_s);
+    flow_.predict(done.dt_s);
+    done.fluid = flow_.project(done.dt_s);
+    if (done.fluid.cfl <= limit) break;
+    flow_.undo();
+    done.dt_s *= std::max(smallest_cut, planned_share * limit / done.fluid.cfl);
+    if (done.dt_s < settings_.limits.smallest_s)
+      throw NumericalFailure(
+          "coupling: the time step fell to {:.3g} s, and still the fluid would move {:.3g} cells in it",
+          done.dt_s, done.fluid.cfl);
+  }
   done.critical_s = shell_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
   if (shell_) {
     transfer_.interpolate(flow_.velocity(), velocity_);
@@ -86,7 +104,6 @@ void ImmersedFlow::load(const state::State& state) {
   last_dt_ = history[1];
   max_speed_ = history[2];
   caution_ = history[3];
-  planned_ = 0;
   if (!shell_) return;
   Points x = state.array("coupling/points").points("coupling/points");
   Points direction = state.array("coupling/direction").points("coupling/direction");

@@ -1,11 +1,14 @@
 // The coupled system of one time step: fluid and, where the scene has one, an immersed shell.
 //
 //   every probe_interval steps: lambda_max of (1/rho) J S K anew             (stability.hpp)
-//   dt from the limits;  F = F(x^n);  f = S F;  u^(n+1) by the projection method;  x^(n+1) = x^n + dt J
-//   u^(n+1)
+//   dt from the limits;  0D models of the ends to t + dt;  F = F(x^n);  f = S F;  u^(n+1) by the projection
+//   method;  x^(n+1) = x^n + dt J u^(n+1) a step whose local CFL number, dt max(|u|+|v|+|w|)/h of u^(n+1),
+//   exceeds the limit is undone and repeated with a smaller dt (and AB2 begins anew), so that the limit holds
+//   for every step
 // with S and J at x^n: symplectic Euler for the structure, so that no energy is put in by the lag.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -28,6 +31,7 @@ struct ImmersedFlowSettings {
 struct ImmersedStep {
   double dt_s = 0;
   double critical_s = 0;  ///< dt_crit; infinite without a shell
+  int repeats = 0;        ///< attempts that were undone
   fluid::StepReport fluid;
 };
 
@@ -36,11 +40,10 @@ class ImmersedFlow {
   /// shell may be null: flow past held bodies alone. The flow must outlive this object.
   ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> shell, const ImmersedFlowSettings& settings);
 
-  /// One step of at most `at_most` seconds. NumericalFailure (on all ranks) by any alarm: the state is then
-  /// to be restored.
-  ImmersedStep step(double at_most);
-  /// The step that step() would take; end pressures of the coming step can be set in between.
-  double plan(double at_most);
+  /// One step of at most `at_most` seconds. set_ends(dt) is called before every attempt, to bring the
+  /// pressures of the flow's ends to the end of the step. NumericalFailure (on all ranks) by any alarm: the
+  /// state is then to be restored.
+  ImmersedStep step(double at_most, const std::function<void(double dt)>& set_ends = {});
 
   fluid::Flow& flow() { return flow_; }
   ImmersedShell* shell() { return shell_.get(); }
@@ -57,6 +60,7 @@ class ImmersedFlow {
 
  private:
   void probe();
+  double plan(double at_most);
 
   fluid::Flow& flow_;
   std::unique_ptr<ImmersedShell> shell_;
@@ -67,7 +71,6 @@ class ImmersedFlow {
   Points force_, velocity_;
   long steps_ = 0;
   double last_dt_ = 0, max_speed_ = 0, caution_ = 1;
-  double planned_ = 0;
 };
 
 }  // namespace valsalva::coupling

@@ -188,21 +188,23 @@ StepReport Flow::project(double dt) {
   return report;
 }
 
+// Downwards, so that the new pressure can take the place of phi where no face above needs it any more: the
+// old pressure stays for undo().
 StepReport Flow::correct(double dt) {
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
   const double factor = dt / (parameters_.density * slab_.grid.h);
   const double keep = keep_pressure_ ? 1 : 0;
   double energy = 0, speed = 0;
-  for (int k = 0; k < slab_.w_planes(); ++k) {
+  for (int k = slab_.w_planes() - 1; k >= 0; --k) {
     const bool inside = k < slab_.planes;
-    for (int j = 0; j < ny; ++j) {
-      const double* phi = correction_.row(j, k);
+    for (int j = ny - 1; j >= 0; --j) {
+      double* phi = correction_.row(j, k);
       double* w = velocity_[2].row(j, k);
       if (inside) {
         double* u = velocity_[0].row(j, k);
         double* v = velocity_[1].row(j, k);
-        double* p = pressure_.row(j, k);
+        const double* p = pressure_.row(j, k);
 #pragma omp simd reduction(+ : energy) reduction(max : speed)
         for (int i = 0; i < nx; ++i) {
           const double un = u[i] - factor * (phi[i] - phi[i - 1]);
@@ -211,11 +213,12 @@ StepReport Flow::correct(double dt) {
           u[i] = un;
           v[i] = vn;
           w[i] = wn;
-          p[i] = keep * p[i] + phi[i];
           energy += un * un + vn * vn + wn * wn;
           const double sum = std::abs(un) + std::abs(vn) + std::abs(wn);
           speed = speed < sum ? sum : speed;
         }
+#pragma omp simd
+        for (int i = 0; i < nx; ++i) phi[i] += keep * p[i];
       } else {
         for (int i = 0; i < nx; ++i) {
           w[i] -= factor * (phi[i] - phi[i - sz]);
@@ -225,12 +228,19 @@ StepReport Flow::correct(double dt) {
       }
     }
   }
+  pressure_.swap(correction_);
   StepReport report;
   report.kinetic_energy =
       mpi::sum(slab_.comm, 0.5 * parameters_.density * std::pow(slab_.grid.h, 3) * energy);
   report.max_speed = mpi::max(slab_.comm, speed);
   report.cfl = dt * report.max_speed / slab_.grid.h;
   return report;
+}
+
+void Flow::undo() {
+  velocity_.swap(next_);
+  pressure_.swap(correction_);
+  previous_dt_ = 0;
 }
 
 void Flow::report_not_finite() const {

@@ -101,6 +101,10 @@ class Flow {
     return project(dt);
   }
 
+  /// Directly after project(): takes the step back. Velocity and pressure are exactly what they were before;
+  /// the step history is forgotten, so that the next step is a first one.
+  void undo();
+
   /// Flow along +z through the face plane k (0..nz of the whole grid), inside the lumen, mm3/s.
   double flow_through(int plane) const;
   double flow_through(End end) const { return flow_through(end == End::low ? 0 : grid().cells[2]); }

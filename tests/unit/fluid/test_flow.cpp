@@ -177,6 +177,21 @@ TEST(Flow, SavedStateContinuesBitForBit) {
   for (const auto& [name, array] : a) EXPECT_EQ(array.data, b.at(name).data) << name;
 }
 
+TEST(Flow, AStepTakenBackLeavesVelocityAndPressureAsTheyWere) {
+  Flow flow(MPI_COMM_SELF, tube_grid(10), boundaries_of(Side::slip, Side::slip, Side::open), {});
+  flow.solids().set_lumen(tube);
+  flow.set_velocity(rough);
+  flow.set_end_pressure(End::low, 500);
+  for (int step = 0; step < 3; ++step) flow.step(1e-4);
+  const auto before = flow.save();
+  flow.step(3e-4);
+  flow.undo();
+  const auto after = flow.save();
+  for (const char* name : {"fluid/velocity_x", "fluid/velocity_y", "fluid/velocity_z", "fluid/pressure"})
+    EXPECT_EQ(before.at(name).data, after.at(name).data) << name;
+  EXPECT_LT(flow.step(1e-4).cfl, 0.1);
+}
+
 TEST(Flow, StateOfAnotherGridIsRefused) {
   Flow small(MPI_COMM_SELF, tube_grid(8), boundaries_of(Side::slip, Side::slip, Side::open), {});
   Flow large(MPI_COMM_SELF, tube_grid(10), boundaries_of(Side::slip, Side::slip, Side::open), {});

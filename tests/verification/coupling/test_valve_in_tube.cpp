@@ -58,13 +58,14 @@ struct Rig {
   // The aorta rises to 40 mmHg in 10 ms behind a characteristic resistance.
   void run_to(double end_s) {
     while (time_s < end_s) {
-      const double dt = system->plan(end_s - time_s);
-      const double s = std::min(1.0, (time_s + dt) / 0.01),
-                   flow_mL = flow->flow_through(fluid::End::high) / 1e3;
-      flow->set_end_pressure(fluid::End::high, pa_per_mmHg * (40 * s * s * (3 - 2 * s) + 0.042 * flow_mL));
-      const coupling::ImmersedStep step = system->step(end_s - time_s);
+      const double flow_mL = flow->flow_through(fluid::End::high) / 1e3;
+      const coupling::ImmersedStep step = system->step(end_s - time_s, [&](double dt) {
+        const double s = std::min(1.0, (time_s + dt) / 0.01);
+        flow->set_end_pressure(fluid::End::high, pa_per_mmHg * (40 * s * s * (3 - 2 * s) + 0.042 * flow_mL));
+      });
       time_s = step.dt_s >= end_s - time_s ? end_s : time_s + step.dt_s;
       EXPECT_LT(step.dt_s, step.critical_s);
+      EXPECT_LE(step.fluid.cfl, coupling::StepLimits{}.cfl);
     }
   }
 };
