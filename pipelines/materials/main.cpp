@@ -3,6 +3,7 @@
 // twice.
 //
 //   valsalva-material --laws                                   the laws and their parameters
+//   valsalva-material --describe hgo                           its parameters as CSV
 //   valsalva-material --sets                                   the published materials
 //   valsalva-material --set tavr-ifed-2022/porcine-pericardium --test uniaxial1 --to 1.1 --points 11
 //   valsalva-material --law neo-hookean --parameter mu_Pa=1e5 --test equibiaxial --to 1.3
@@ -31,7 +32,7 @@ using namespace valsalva::materials;
 namespace {
 
 struct Options {
-  std::string set, law, test, loads_file, stream;
+  std::string set, law, describe, test, loads_file, stream;
   ParameterValues parameters;
   std::vector<double> fibre_angles_deg;
   bool list_laws = false, list_sets = false;
@@ -43,7 +44,7 @@ constexpr const char* usage =
     "usage: valsalva-material (--set NAME | --law LAW [--parameter key=value]... [--fibre-angles a,b])\n"
     "         (--test uniaxial1|uniaxial2|equibiaxial|shear [--to VALUE] [--points N] |\n"
     "          --loads FILE.csv [--stream key,key...])\n"
-    "       valsalva-material --laws | --sets\n";
+    "       valsalva-material --laws | --sets | --describe LAW\n";
 
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts;
@@ -68,9 +69,9 @@ double number(const std::string& text, const std::string& what) {
 }
 
 Options parse(int argc, char** argv) {
-  static const std::vector<std::string> known{"--laws",      "--sets",         "--set",   "--law",
-                                              "--parameter", "--fibre-angles", "--test",  "--to",
-                                              "--points",    "--loads",        "--stream"};
+  static const std::vector<std::string> known{"--laws", "--sets",      "--set",          "--describe",
+                                              "--law",  "--parameter", "--fibre-angles", "--test",
+                                              "--to",   "--points",    "--loads",        "--stream"};
   Options o;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
@@ -84,6 +85,8 @@ Options parse(int argc, char** argv) {
       o.list_sets = true;
     } else if (word == "--set") {
       o.set = value();
+    } else if (word == "--describe") {
+      o.describe = value();
     } else if (word == "--law") {
       o.law = value();
     } else if (word == "--parameter") {
@@ -125,6 +128,14 @@ void list_laws() {
       fmt::print("  {:22} {} ({}; a fit searches {} to {})\n", p.key, p.doc, standard, p.low, p.high);
     }
   }
+}
+
+void describe(const std::string& name) {
+  const LawEntry& law = find_law(name);
+  fmt::print("# fibre families: {}\nkey,low,high,required,default\n", law.fibre_families);
+  for (const LawParameter& p : law.parameters)
+    fmt::print("{},{},{},{},{}\n", p.key, p.low, p.high, p.required ? 1 : 0,
+               p.standard ? fmt::format("{}", *p.standard) : "");
 }
 
 void list_sets() {
@@ -247,6 +258,7 @@ void answer_stream(MaterialSet set, const std::vector<SheetLoad>& loads, const s
 void run(const Options& o) {
   if (o.list_laws) return list_laws();
   if (o.list_sets) return list_sets();
+  if (!o.describe.empty()) return describe(o.describe);
   const MaterialSet set = material_of(o);
   if (o.test.empty() == o.loads_file.empty())
     throw InputError("expected one of --test and --loads\n{}", usage);

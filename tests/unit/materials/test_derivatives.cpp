@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "materials/invariant_law.hpp"
 #include "samples.hpp"
 
 using namespace valsalva;
@@ -124,6 +125,40 @@ TEST(Derivatives, OfEveryLawWithEveryVolumetricTermAndSplit) {
                          f.transpose() * f, exact,
                          solid.name() + (split == Split::full ? " full" : " modified"));
       }
+}
+
+// A law that uses every derivative that an InvariantResponse has, so that the assembly is covered also where
+// no published law goes (second derivative in I2, coupling of I1 with I4).
+class EveryTerm : public InvariantLaw {
+ public:
+  std::string name() const override { return "every term"; }
+  InvariantResponse derivatives(const Invariants& at, int families, double factor) const override {
+    const double x = at.i1 - 3, y = at.i2 - 3, a = 2e4 * factor, b = 7e3;
+    InvariantResponse r;
+    r.energy = a * (x + x * x * x) + b * (y + y * y * y);
+    r.d1 = a * (1 + 3 * x * x);
+    r.d11 = 6 * a * x;
+    r.d2 = b * (1 + 3 * y * y);
+    r.d22 = 6 * b * y;
+    for (int i = 0; i < families; ++i) {
+      const double z = at.i4[i] - 1, c = 5e3 * (i + 1);
+      r.energy += c * (z * z * z + x * z * z);
+      r.d1 += c * z * z;
+      r.d4[i] = c * (3 * z * z + 2 * x * z);
+      r.d44[i] = c * (6 * z + 2 * x);
+      r.d14[i] = 2 * c * z;
+    }
+    return r;
+  }
+};
+
+TEST(Derivatives, OfALawThatUsesEveryTerm) {
+  const Fibres fibres = samples::two_fibres();
+  const EveryTerm law;
+  for (const Mat3& f : samples::gradients())
+    check_in_space([&](const Mat3& c, Derivatives d) { return law.respond(c, fibres, factor, d); },
+                   f.transpose() * f, false, law.name());
+  for (const Eigen::Matrix2d& c : plane_states()) check_in_plane(law, c, law.name());
 }
 
 TEST(Derivatives, OfIncompressiblePlaneStress) {
