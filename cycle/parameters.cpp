@@ -98,8 +98,10 @@ Parameters read_parameters(const Case& scene) {
   p.coupling.limits.cfl = scene.real("cycle.max_cfl");
   p.coupling.probe_interval = static_cast<int>(scene.integer("cycle.probe_interval"));
   p.coupling.probe_iterations = static_cast<int>(scene.integer("cycle.probe_iterations"));
-  p.repulsion = {scene.real("cycle.repulsion_kPa") * units::pa_per_kPa,
-                 scene.real("cycle.repulsion_cells") * p.h};
+  p.repulsion.contact = {scene.real("cycle.repulsion_kPa") * units::pa_per_kPa,
+                         scene.real("cycle.repulsion_cells") * p.h};
+  p.repulsion.parting = {scene.real("cycle.parting_kPa") * units::pa_per_kPa,
+                         scene.real("cycle.parting_cells") * p.h};
   p.tissue = tissue_of(scene, p.device ? "device" : "native");
   p.masks = {scene.real("cycle.strut_mask_cells"), scene.real("cycle.shell_mask_cells"),
              scene.real("cycle.edge_mask_cells")};

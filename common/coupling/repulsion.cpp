@@ -14,17 +14,19 @@ Repulsion::Repulsion(const RepulsionParameters& parameters, Points rest, Points 
       start_x_(std::move(start)),
       group_(std::move(group)),
       area_(std::move(area)),
-      nearest_(parameters.range_mm) {
+      range_(std::max(parameters.contact.range_mm, parameters.parting.range_mm)),
+      nearest_(range_) {
   VALSALVA_ASSERT(group_.size() == area_.size() && start_x_.size() == area_.size() &&
                   rest_x_.size() == area_.size());
-  if (!(parameters.range_mm > 0) || !(parameters.pressure_Pa >= 0))
-    throw InputError("coupling: repulsion of {} Pa over {} mm; expected a pressure >= 0 and a range > 0",
-                     parameters.pressure_Pa, parameters.range_mm);
+  for (const auto& cone : {parameters.contact, parameters.parting})
+    if (!(cone.range_mm > 0) || !(cone.pressure_Pa >= 0))
+      throw InputError("coupling: repulsion of {} Pa over {} mm; expected a pressure >= 0 and a range > 0",
+                       cone.pressure_Pa, cone.range_mm);
 }
 
 double Repulsion::add_forces(const Points& x, Points& force) {
   VALSALVA_ASSERT(x.size() == group_.size() && force.size() == x.size());
-  const double range = parameters_.range_mm;
+  const double range = range_;
   nearest_ = range;
   pairs_.clear();
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
@@ -75,17 +77,24 @@ double Repulsion::add_forces(const Points& x, Points& force) {
           const double square = apart.squaredNorm();
           if (square >= range * range || square == 0) continue;
           const double d = std::sqrt(square);
-          const double full = std::min(range, (rest_x_[a] - rest_x_[b]).norm());
-          const double begun = std::min(full, (start_x_[a] - start_x_[b]).norm());
-          const double reach = begun + growth_ * (full - begun);
-          if (d >= reach) continue;
-          const double closeness = 1 - d / reach;
-          const double strength = parameters_.pressure_Pa * std::sqrt(area_[a] * area_[b]);
-          const Vec3 direction = apart / d, push = strength * closeness * direction;
-          pairs_.push_back({static_cast<int>(a), static_cast<int>(b), strength / reach, direction});
-          force[a] += push;
-          force[b] -= push;
-          energy += 0.5 * strength * reach * closeness * closeness;
+          const double rest = (rest_x_[a] - rest_x_[b]).norm(), start = (start_x_[a] - start_x_[b]).norm();
+          double push = 0, stiffness = 0;
+          for (const auto& cone : {parameters_.contact, parameters_.parting}) {
+            const double full = std::min(cone.range_mm, rest), begun = std::min(full, start);
+            const double reach = begun + growth_ * (full - begun);
+            if (d >= reach) continue;
+            const double closeness = 1 - d / reach;
+            const double strength =
+                3 * cone.pressure_Pa / (M_PI * cone.range_mm * cone.range_mm) * area_[a] * area_[b];
+            push += strength * closeness;
+            stiffness += strength / reach;
+            energy += 0.5 * strength * reach * closeness * closeness;
+          }
+          if (push == 0) continue;
+          const Vec3 direction = apart / d;
+          pairs_.push_back({static_cast<int>(a), static_cast<int>(b), stiffness, direction});
+          force[a] += push * direction;
+          force[b] -= push * direction;
           nearest_ = std::min(nearest_, d);
         }
       }

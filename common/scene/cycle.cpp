@@ -27,8 +27,12 @@ void declare_cycle(Schema& schema) {
   schema.real(
       "cycle.edge_mask_cells", 0.8, {0, 2},
       "Fluid faces within this many cells of the leaflets' attached edge are solid: closes the slot there");
-  schema.real("cycle.repulsion_kPa", 100, not_negative(), "Repulsion between leaflets that touch");
+  schema.real("cycle.repulsion_kPa", 200, not_negative(),
+              "Repulsion between leaflets that touch; two sheets push each other with at most 0.44 of it");
   schema.real("cycle.repulsion_cells", 0.6, {0.05, 3}, "Its range in cells");
+  schema.real("cycle.parting_kPa", 10, not_negative(),
+              "The same of the weak repulsion that lets closed leaflets part, which the grid alone does not");
+  schema.real("cycle.parting_cells", 1.5, {0.05, 4}, "Its range in cells");
   schema.real("cycle.anchor_drag_N_s_per_mm", 0.05, positive(),
               "The device slides against the wall at (force - friction capacity) / this (assumed)");
   schema.integer("cycle.history_interval", 10, {1, 100000}, "Steps between rows of history.csv");

@@ -30,7 +30,7 @@ Cloud cloud() {
 
 TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
   const Cloud c = cloud();
-  Repulsion repulsion({2e4, 0.7}, c.start, c.start, c.group, c.area);
+  Repulsion repulsion({{2e4, 0.7}, {3e3, 1.1}}, c.start, c.start, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_GT(repulsion.add_forces(c.x, force), 0);
   Vec3 total = Vec3::Zero();
@@ -50,7 +50,7 @@ TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
 
 TEST(Repulsion, TangentIsSymmetricAndBoundsTheSlopeAlongEachPair) {
   const Cloud c = cloud();
-  Repulsion repulsion({2e4, 0.7}, c.start, c.start, c.group, c.area);
+  Repulsion repulsion({{2e4, 0.7}, {3e3, 1.1}}, c.start, c.start, c.group, c.area);
   Points ignored(c.x.size(), Vec3::Zero()), y(c.x.size()), z(c.x.size());
   repulsion.add_forces(c.x, ignored);
   std::mt19937 random(9);
@@ -82,7 +82,7 @@ TEST(Repulsion, TangentIsSymmetricAndBoundsTheSlopeAlongEachPair) {
 
 TEST(Repulsion, FindsEveryPair) {
   const Cloud c = cloud();
-  Repulsion repulsion({1e4, 0.5}, c.start, c.start, c.group, c.area);
+  Repulsion repulsion({{1e4, 0.5}, {0, 0.1}}, c.start, c.start, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero()), expected = force;
   repulsion.add_forces(c.x, force);
   double nearest = 0.5;
@@ -91,7 +91,8 @@ TEST(Repulsion, FindsEveryPair) {
       const Vec3 apart = c.x[a] - c.x[b];
       if (a == b || c.group[a] < 0 || c.group[b] < 0 || c.group[a] == c.group[b] || apart.norm() >= 0.5)
         continue;
-      expected[a] += 1e4 * std::sqrt(c.area[a] * c.area[b]) * (1 - apart.norm() / 0.5) * apart.normalized();
+      expected[a] +=
+          3e4 / (M_PI * 0.25) * c.area[a] * c.area[b] * (1 - apart.norm() / 0.5) * apart.normalized();
       nearest = std::min(nearest, apart.norm());
     }
   for (std::size_t a = 0; a < c.x.size(); ++a) EXPECT_LT((force[a] - expected[a]).norm(), 1e-8);
@@ -100,7 +101,7 @@ TEST(Repulsion, FindsEveryPair) {
 
 TEST(Repulsion, LeavesOneLeafletAlone) {
   const Cloud c = cloud();
-  Repulsion repulsion({1e4, 0.5}, c.start, c.start, std::vector<int>(c.x.size(), 0), c.area);
+  Repulsion repulsion({{1e4, 0.5}, {0, 0.1}}, c.start, c.start, std::vector<int>(c.x.size(), 0), c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
   EXPECT_EQ(repulsion.nearest(), 0.5);
@@ -108,14 +109,14 @@ TEST(Repulsion, LeavesOneLeafletAlone) {
 
 TEST(Repulsion, NeighboursAtTheStartDoNotPush) {
   const Cloud c = cloud();
-  Repulsion repulsion({1e4, 0.5}, c.x, c.x, c.group, c.area);
+  Repulsion repulsion({{1e4, 0.5}, {0, 0.1}}, c.x, c.x, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
 }
 
 TEST(Repulsion, RangesGrowFromTheDistanceOfTheStart) {
   const Points rest{{0, 0, 0}, {5, 0, 0}}, start{{0, 0, 0}, {0.1, 0, 0}};
-  Repulsion repulsion({1e4, 0.5}, rest, start, {0, 1}, {1, 1});
+  Repulsion repulsion({{1e4, 0.5}, {0, 0.1}}, rest, start, {0, 1}, {1, 1});
   const auto push = [&](double growth) {
     Points force(2, Vec3::Zero());
     repulsion.set_growth(growth);
@@ -124,8 +125,32 @@ TEST(Repulsion, RangesGrowFromTheDistanceOfTheStart) {
     return force[1].x();
   };
   EXPECT_EQ(push(0), 0);
-  EXPECT_NEAR(push(0.5), 1e4 * (1 - 0.1 / 0.3), 1e-9);
-  EXPECT_NEAR(push(1), 1e4 * (1 - 0.1 / 0.5), 1e-9);
+  EXPECT_NEAR(push(0.5), 3e4 / (M_PI * 0.25) * (1 - 0.1 / 0.3), 1e-9);
+  EXPECT_NEAR(push(1), 3e4 / (M_PI * 0.25) * (1 - 0.1 / 0.5), 1e-9);
+}
+
+TEST(Repulsion, SheetsPushWithThePressureOfTheHeaderOnAnyMesh) {
+  const double p = 1e4, r = 1, D = 0.3;
+  for (const double spacing : {0.2, 0.1}) {
+    Points x;
+    std::vector<int> group;
+    const int n = static_cast<int>(std::lround(4 / spacing));
+    for (int sheet = 0; sheet < 2; ++sheet)
+      for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) {
+          x.emplace_back(i * spacing, j * spacing, sheet * D);
+          group.push_back(sheet);
+        }
+    Points far = x;
+    for (std::size_t a = 0; a < x.size(); ++a) far[a].z() += 10 * group[a];
+    const double area = spacing * spacing;
+    Repulsion repulsion({{p, r}, {0, r}}, far, far, group, std::vector<double>(x.size(), area));
+    Points force(x.size(), Vec3::Zero());
+    repulsion.add_forces(x, force);
+    const int middle = (n / 2) * (n + 1) + n / 2;
+    const double expected = -3 * p * D / r * (1 - D / r) * (1 - D / r);
+    EXPECT_NEAR(force[middle].z() / area, expected, 0.03 * std::abs(expected)) << spacing;
+  }
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ struct Rig {
     flow->solids().mark_segments(ring, mesh.shell.reference, mesh.attachment, 0.8 * h);
     auto shell = std::make_unique<coupling::ImmersedShell>(
         MPI_COMM_SELF, test::pericardial_shell(mesh), mesh.shell.reference, mesh.shell.reference,
-        mesh.attached, mesh.leaflet, coupling::RepulsionParameters{1e5, 0.6 * h});
+        mesh.attached, mesh.leaflet, coupling::RepulsionParameters{{2e5, 0.6 * h}, {1e4, 1.5 * h}});
     system =
         std::make_unique<coupling::ImmersedFlow>(*flow, std::move(shell), coupling::ImmersedFlowSettings{});
   }
