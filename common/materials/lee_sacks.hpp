@@ -1,10 +1,11 @@
 // Lee-Sacks law: neo-Hookean matrix, isotropic and fibre exponentials weighted by w,
 //   W = c0/2 (I1 - 3) + c1/2 { w exp[c2 (I1 - 3)^2] + (1 - w) exp[c3 (max(I4, 1) - 1)^2] - 1 }.
-// Source: the law that Johnson et al. 2022 (leaflet-flutter) name and Wu et al. 2018 (J Biomech 74:23-31)
-// give after Lee et al. 2014; w = 1 is the isotropic form, whose printed equation is checked against the
-// manual of FEBio ("isotropic Lee-Sacks"). The anisotropic form is rebuilt from memory of that paper and the
-// public model zoos, and the fibre term is switched off in compression, which the source does not state. One
-// fibre family; with two, each takes half of the fibre term. Plane-stress tangent: positive semi-definite.
+// Source: the law that Johnson et al. 2022 (leaflet-flutter) name, after Wu et al. 2018 (J Biomech 74:23-31)
+// and Lee et al. 2014. Neither text is at hand; the equation is the one that the same groups publish in the
+// heart-valve demonstration of CouDALFISh (anisotropic, and with w = 1 isotropic), and the isotropic form
+// agrees with FEBio's manual. They do not switch the fibre term off in compression; here it is, as in all
+// other laws. One fibre family; with two, each takes half of the fibre term. The plane-stress tangent is
+// positive semi-definite.
 #pragma once
 
 #include "materials/invariant_law.hpp"

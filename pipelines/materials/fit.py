@@ -53,7 +53,7 @@ class ProgramMissing(Exception):
 
 
 def suggestion(word, known):
-    near = difflib.get_close_matches(word, known, n=1)
+    near = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
     return f"; did you mean '{near[0]}'?" if near else ""
 
 
