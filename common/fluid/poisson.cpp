@@ -1,19 +1,17 @@
 #include "fluid/poisson.hpp"
 
-#include <fftw3.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/errors.hpp"
+#include "fluid/plane_transform.hpp"
 
 namespace valsalva::fluid {
 
 namespace {
 
-// h^2 times minus the eigenvalues of the one-dimensional second difference, in the order of FFTW's output.
+// h^2 times minus the eigenvalues of the one-dimensional second difference, in the order of the transform.
 std::vector<double> eigenvalues(int n, bool periodic) {
   std::vector<double> values(n);
   for (int m = 0; m < n; ++m) {
@@ -24,27 +22,10 @@ std::vector<double> eigenvalues(int n, bool periodic) {
   return values;
 }
 
-class PlaneBuffer {
- public:
-  explicit PlaneBuffer(std::size_t size) : data_(fftw_alloc_real(size)) {
-    if (!data_)
-      throw EnvironmentError("out of memory for a plane of {} numbers of the pressure solver", size);
-    std::fill_n(data_, size, 0.0);
-  }
-  ~PlaneBuffer() { fftw_free(data_); }
-  PlaneBuffer(const PlaneBuffer&) = delete;
-  PlaneBuffer& operator=(const PlaneBuffer&) = delete;
-  double* data() { return data_; }
-
- private:
-  double* data_;
-};
-
 }  // namespace
 
 struct Poisson::Impl {
   Impl(const Slab& slab, const Boundaries& boundaries);
-  ~Impl();
 
   void factorise(const Boundaries& boundaries);
   void make_reduced_system();
@@ -63,12 +44,12 @@ struct Poisson::Impl {
   std::size_t modes;
   double h;
   bool periodic_z, free_mean, reversed, has_start, has_end;
-  fftw_plan to_modes = nullptr, from_modes = nullptr;
-  PlaneBuffer work, previous;
-  std::vector<double> shift;    ///< eigenvalue of each mode
-  std::vector<double> inverse;  ///< of the pivots, plane by plane
-  std::vector<double> reduced;  ///< right-hand side, then forward-eliminated
-  double scale = 1;             ///< -h^2 and the transforms' normalisation
+  PlaneTransform transform;
+  std::vector<double> cells, work, previous;  ///< a plane of cells, two of modes
+  std::vector<double> shift;                  ///< eigenvalue of each mode
+  std::vector<double> inverse;                ///< of the pivots, plane by plane
+  std::vector<double> reduced;                ///< right-hand side, then forward-eliminated
+  double scale = 1;                           ///< -h^2 and the transforms' normalisation
 
   // Values at the ends: x_first = first + gain xs + ..., of this rank, one number a mode.
   std::vector<double> first_value, chain, start_value, end_value;
@@ -89,6 +70,8 @@ Poisson::Impl::Impl(const Slab& slab, const Boundaries& boundaries)
       modes(slab.grid.plane_cells()),
       h(slab.grid.h),
       periodic_z(slab.periodic_z),
+      transform(nx, ny, boundaries.periodic(0), boundaries.periodic(1)),
+      cells(modes),
       work(modes),
       previous(modes) {
   for (int r = 0; r <= ranks; ++r) {
@@ -101,27 +84,17 @@ Poisson::Impl::Impl(const Slab& slab, const Boundaries& boundaries)
   has_end = periodic_z || ranks > 1;
   free_mean = boundaries.end(End::low) != Side::open && boundaries.end(End::high) != Side::open;
 
-  const bool px = boundaries.periodic(0), py = boundaries.periodic(1);
-  to_modes = fftw_plan_r2r_2d(ny, nx, work.data(), work.data(), py ? FFTW_R2HC : FFTW_REDFT10,
-                              px ? FFTW_R2HC : FFTW_REDFT10, FFTW_ESTIMATE);
-  from_modes = fftw_plan_r2r_2d(ny, nx, work.data(), work.data(), py ? FFTW_HC2R : FFTW_REDFT01,
-                                px ? FFTW_HC2R : FFTW_REDFT01, FFTW_ESTIMATE);
-  scale = -h * h / ((px ? nx : 2.0 * nx) * (py ? ny : 2.0 * ny));
-
-  const std::vector<double> lx = eigenvalues(nx, px), ly = eigenvalues(ny, py);
+  scale = -h * h / (4.0 * nx * ny);
+  const std::vector<double> lx = eigenvalues(nx, boundaries.periodic(0)),
+                            ly = eigenvalues(ny, boundaries.periodic(1));
   shift.resize(modes);
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) shift[static_cast<std::size_t>(j) * nx + i] = lx[i] + ly[j];
+  for (int i = 0; i < nx; ++i) {
+    for (int j = 0; j < ny; ++j) shift[static_cast<std::size_t>(i) * ny + j] = lx[i] + ly[j];
   }
   if (free_mean) shift[0] = 1;  // any regular value: this mode is solved apart
   mean_mode.resize(planes);
   factorise(boundaries);
   if (has_end) make_reduced_system();
-}
-
-Poisson::Impl::~Impl() {
-  fftw_destroy_plan(to_modes);
-  fftw_destroy_plan(from_modes);
 }
 
 void Poisson::Impl::factorise(const Boundaries& boundaries) {
@@ -214,8 +187,8 @@ void Poisson::Impl::forward(const Source& b) {
   }
   double* in = work.data();
   for (int step = 0; step < planes; ++step) {
-    b(static_cast<int>(plane_of(step)), in);
-    fftw_execute(to_modes);
+    b(static_cast<int>(plane_of(step)), cells.data());
+    transform.forward(cells.data(), in);
     mean_mode[plane_of(step)] = scale * in[0];
     const double* pivot = plane(inverse, step);
     double* now = plane(reduced, step);
@@ -300,8 +273,8 @@ void Poisson::Impl::backward(const Sink& phi) {
 #pragma omp simd
     for (std::size_t m = 0; m < modes; ++m) out[m] = before[m] = now[m] + pivot[m] * before[m];
     if (free_mean) out[0] = mean_mode[plane_of(step)];
-    fftw_execute(from_modes);
-    phi(static_cast<int>(plane_of(step)), out);
+    transform.backward(out, cells.data());
+    phi(static_cast<int>(plane_of(step)), cells.data());
   }
 }
 
