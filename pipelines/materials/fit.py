@@ -174,7 +174,7 @@ class Stream:
         if angles:
             words += ["--fibre-angles", ",".join(repr(a) for a in angles)]
         self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.index, self.calls, self.last_error = data.index, 0, ""
+        self.index, self.calls, self.answers, self.last_error = data.index, 0, 0, ""
 
     def stresses(self, values):
         """None where the law refuses the values."""
@@ -190,6 +190,7 @@ class Stream:
         if line.startswith("error: "):
             self.last_error = line[7:].strip()
             return None
+        self.answers += 1
         return np.array([float(x) for x in line.split(",")])[self.index]
 
     def close(self):
@@ -266,6 +267,8 @@ def fit(data, law, fixed, start, angles, free_angle=False, starts=12, confidence
                 continue
             if best is None or found.cost < best.cost:
                 best = found
+        if not stream.answers:
+            raise InputError(f"the law refuses every start: {stream.last_error}")
         if best is None or np.max(np.abs(best.fun)) >= 1e3 or best.status <= 0 and best.cost > 1e-6:
             raise FitFailure(f"no start of {len(points)} led to a fit; give --start values, or fix parameters"
                              + (f"; the law's last word: {stream.last_error}" if stream.last_error else ""))
