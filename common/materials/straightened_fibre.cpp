@@ -53,7 +53,6 @@ StraightenedFibre::Fibre StraightenedFibre::fibre(double l) const {
 InvariantResponse StraightenedFibre::derivatives(const Invariants& at, int families, double factor) const {
   InvariantResponse r = matrix_.derivatives(at, families, factor);
   for (int i = 0; i < families; ++i) {
-    if (at.i4[i] <= 1) continue;
     const double l = std::sqrt(at.i4[i]);
     const Fibre f = fibre(l);
     r.energy += f.energy;

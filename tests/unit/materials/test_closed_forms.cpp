@@ -196,6 +196,12 @@ TEST(ClosedForms, LeeSacksWithFibre) {
   }
 }
 
+TEST(ClosedForms, LeeSacksSharesItsFibreTermBetweenTwoFamilies) {
+  const auto law = make_law("lee-sacks", {{"c0_Pa", 6e4}, {"c1_Pa", 1e4}, {"c2", 3}, {"c3", 5}, {"w", 0.4}});
+  expect_close(equibiaxial(*law, 1.2, fibres_at({0, 0})).cauchy_Pa(0, 0),
+               equibiaxial(*law, 1.2, fibres_at({0})).cauchy_Pa(0, 0), 6e4, "two families along one line");
+}
+
 TEST(ClosedForms, StraightenedFibre) {
   const double c3 = 1e5, c4 = 20, straight = 1.1;
   const double c5 = c3 * c4 * std::exp(c4 * 0.1), c6 = c3 * (std::exp(c4 * 0.1) - 1) - c5 * straight;
