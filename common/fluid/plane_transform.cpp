@@ -37,7 +37,12 @@ void transpose(int rows, int columns, const double* in, std::ptrdiff_t in_stride
 }  // namespace
 
 PlaneTransform::Direction::Direction(int cells_along, int columns_across, bool periodic)
-    : n(cells_along), columns((columns_across + 1) / 2 * 2), row(n), cosine(n, 1.0), sine(n, 0.0) {
+    : n(cells_along),
+      columns((columns_across + 1) / 2 * 2),
+      padded(columns > columns_across),
+      row(n),
+      cosine(n, 1.0),
+      sine(n, 0.0) {
   // Whole cache lines, an odd number of them, so that rows do not compete for the same places of the cache.
   stride = ((columns + 7) / 8 | 1) * 8;
   for (int j = 0; j < n; ++j) row[j] = periodic ? j : j % 2 == 0 ? j / 2 : n - (j + 1) / 2;
@@ -54,6 +59,12 @@ PlaneTransform::Direction::Direction(int cells_along, int columns_across, bool p
                                        FFTW_ESTIMATE));
   to_cells.reset(fftw_plan_many_dft(1, &n, columns / 2, b, &n, across, 1, a, &n, across, 1, FFTW_BACKWARD,
                                     FFTW_ESTIMATE));
+}
+
+// The partner of the last of an odd number of columns.
+void PlaneTransform::Direction::clear_padding() {
+  if (!padded) return;
+  for (int k = 0; k < n; ++k) cells.get()[k * stride + columns - 1] = 0;
 }
 
 // The columns a and b of Z = A + i B, A and B the spectra of real numbers: 2 A_k = Z_k + conj Z_(n-k),
@@ -117,11 +128,13 @@ void PlaneTransform::forward(const double* cells, double* modes) {
   const int nx = x_.n, ny = y_.n;
   for (int j = 0; j < ny; ++j)
     std::copy_n(cells + static_cast<std::size_t>(j) * nx, nx, y_.cells.get() + y_.row[j] * y_.stride);
+  y_.clear_padding();
   fftw_execute(y_.to_spectrum.get());
   y_.separate(y_.spectrum.get(), y_.stride, y_.cells.get(), y_.stride);
   transpose(
       ny, nx, y_.cells.get(), y_.stride, x_.cells.get(), x_.stride, [&](int i) { return x_.row[i]; },
       [](int j) { return j; });
+  x_.clear_padding();
   fftw_execute(x_.to_spectrum.get());
   x_.separate(x_.spectrum.get(), x_.stride, x_.cells.get(), x_.stride);
   for (int i = 0; i < nx; ++i)
@@ -132,11 +145,13 @@ void PlaneTransform::backward(const double* modes, double* cells) {
   const int nx = x_.n, ny = y_.n;
   for (int i = 0; i < nx; ++i)
     std::copy_n(modes + static_cast<std::size_t>(i) * ny, ny, x_.cells.get() + i * x_.stride);
+  x_.clear_padding();
   x_.unite(x_.cells.get(), x_.stride, x_.spectrum.get(), x_.stride);
   fftw_execute(x_.to_cells.get());
   transpose(
       nx, ny, x_.cells.get(), x_.stride, y_.cells.get(), y_.stride, [](int j) { return j; },
       [&](int i) { return x_.row[i]; });
+  y_.clear_padding();
   y_.unite(y_.cells.get(), y_.stride, y_.spectrum.get(), y_.stride);
   fftw_execute(y_.to_cells.get());
   for (int j = 0; j < ny; ++j)

@@ -12,8 +12,9 @@
 
 #include <fftw3.h>
 
-#include <array>
+#include <cstddef>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 namespace valsalva::fluid {
@@ -43,7 +44,9 @@ class PlaneTransform {
     Direction(int n, int columns, bool periodic);
     void separate(const double* in, std::ptrdiff_t in_stride, double* out, std::ptrdiff_t out_stride) const;
     void unite(const double* in, std::ptrdiff_t in_stride, double* out, std::ptrdiff_t out_stride) const;
-    int n, columns;
+    void clear_padding();
+    int n, columns;  ///< columns: an even number
+    bool padded;
     std::ptrdiff_t stride;  ///< of both buffers' rows, in doubles
     std::vector<int> row;   ///< where cell j stands in the buffer
     std::vector<double> cosine, sine;
