@@ -10,7 +10,7 @@
 //   Fung, StVenantKirchhoff            W(E)
 //
 // What volume change costs is not part of it:
-//   incompressible thin bodies   PlaneLaw::plane of the law itself, C33 = 1/det C     (plane_stress.hpp)
+//   incompressible thin bodies   the law itself as a PlaneLaw, C33 = 1/det C          (plane_stress.hpp)
 //   solids, compressible shells  SolidLaw = law + volumetric term                      (solid_law.hpp)
 //
 // `factor` multiplies the isotropic matrix part only (a stenotic leaflet has C10 x 1000).
@@ -32,6 +32,8 @@ struct Fibres {
   std::array<Vec3, 2> direction{Vec3(1, 0, 0), Vec3(0, 1, 0)};
 };
 
+enum class Derivatives { stress, tangent };
+
 struct ElasticResponse {
   double energy = 0;                    ///< W, Pa
   Mat3 stress = Mat3::Zero();           ///< S, Pa
@@ -45,8 +47,9 @@ class ElasticLaw : public PlaneLaw {
   virtual ElasticResponse respond(const Mat3& c, const Fibres& fibres, double factor,
                                   Derivatives wanted) const = 0;
   /// Plane stress of the incompressible solid: C33 = 1/det C.
-  PlaneTangent plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
-                     Derivatives wanted) const override;
+  PlaneStress plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor) const override;
+  PlaneTangent plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                             double factor) const override;
 };
 
 }  // namespace valsalva::materials

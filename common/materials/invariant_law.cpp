@@ -24,6 +24,27 @@ PlaneInvariants invariants_of(const Eigen::Matrix2d& c, const PlaneFibres& fibre
   return v;
 }
 
+Eigen::Matrix2d i1_gradient(const PlaneInvariants& v) {
+  return Eigen::Matrix2d::Identity() + v.c33.first * v.cofactor;
+}
+
+Eigen::Matrix2d i2_gradient(const PlaneInvariants& v) {
+  return (1 + v.trace * v.c33.first) * v.cofactor + v.c33.value * Eigen::Matrix2d::Identity();
+}
+
+bool uses_i2(const InvariantResponse& w) {
+  return w.d2 != 0 || w.d22 != 0;
+}
+
+PlaneStress stress_of(const PlaneInvariants& v, const InvariantResponse& w,
+                      const Eigen::Matrix2d& i1_gradient, const PlaneFibres& fibres) {
+  PlaneStress s{w.energy, 2 * w.d1 * i1_gradient, w.exponent, v.c33.value};
+  if (uses_i2(w)) s.stress += 2 * w.d2 * i2_gradient(v);
+  for (int i = 0; i < fibres.count; ++i)
+    s.stress += 2 * w.d4[i] * fibres.direction[i] * fibres.direction[i].transpose();
+  return s;
+}
+
 }  // namespace
 
 ElasticResponse InvariantLaw::respond(const Mat3& c, const Fibres& fibres, double factor,
@@ -45,7 +66,7 @@ ElasticResponse InvariantLaw::respond(const Mat3& c, const Fibres& fibres, doubl
 
   const Voigt6 one = voigt(Mat3::Identity());
   r.tangent = w.d11 * one * one.transpose();
-  if (w.d2 != 0 || w.d22 != 0) {
+  if (uses_i2(w)) {
     const Voigt6 g = voigt(g2);
     r.tangent +=
         w.d22 * g * g.transpose() + w.d2 * (one * one.transpose() - symmetric_square(Mat3::Identity()));
@@ -58,29 +79,24 @@ ElasticResponse InvariantLaw::respond(const Mat3& c, const Fibres& fibres, doubl
   return r;
 }
 
-PlaneTangent InvariantLaw::plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
-                                 Derivatives wanted) const {
+PlaneStress InvariantLaw::plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                                       double factor) const {
+  const PlaneInvariants v = invariants_of(c, fibres);
+  return stress_of(v, derivatives(v, fibres.count, factor), i1_gradient(v), fibres);
+}
+
+PlaneTangent InvariantLaw::plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                                         double factor) const {
   const PlaneInvariants v = invariants_of(c, fibres);
   const InvariantResponse w = derivatives(v, fibres.count, factor);
-  const bool uses_i2 = w.d2 != 0 || w.d22 != 0;
-  const Eigen::Matrix2d i1_gradient = Eigen::Matrix2d::Identity() + v.c33.first * v.cofactor;
-  const Eigen::Matrix2d i2_gradient =
-      v.cofactor + v.c33.value * Eigen::Matrix2d::Identity() + v.trace * v.c33.first * v.cofactor;
-
-  PlaneTangent r;
-  r.at = {w.energy, 2 * w.d1 * i1_gradient, w.exponent, v.c33.value};
-  if (uses_i2) r.at.stress += 2 * w.d2 * i2_gradient;
-  for (int i = 0; i < fibres.count; ++i)
-    r.at.stress += 2 * w.d4[i] * fibres.direction[i] * fibres.direction[i].transpose();
-  if (wanted == Derivatives::stress) return r;
-
-  const Eigen::Vector3d g = plane_voigt(i1_gradient);
+  const Eigen::Matrix2d gradient = i1_gradient(v);
+  const Eigen::Vector3d g = plane_voigt(gradient);
   const Eigen::Vector3d k = plane_voigt(v.cofactor);
   const Eigen::Matrix3d& det_hessian = plane_determinant_hessian();
   Eigen::Matrix3d d = w.d11 * g * g.transpose();
   d += w.d1 * (v.c33.second * k * k.transpose() + v.c33.first * det_hessian);
-  if (uses_i2) {
-    const Eigen::Vector3d g2 = plane_voigt(i2_gradient);
+  if (uses_i2(w)) {
+    const Eigen::Vector3d g2 = plane_voigt(i2_gradient(v));
     const Eigen::Vector3d one(1, 1, 0);
     d += w.d22 * g2 * g2.transpose() + w.d2 * ((1 + v.trace * v.c33.first) * det_hessian +
                                                v.c33.first * (one * k.transpose() + k * one.transpose()) +
@@ -90,8 +106,7 @@ PlaneTangent InvariantLaw::plane(const Eigen::Matrix2d& c, const PlaneFibres& fi
     const Eigen::Vector3d a = plane_voigt(fibres.direction[i] * fibres.direction[i].transpose());
     d += w.d44[i] * a * a.transpose() + w.d14[i] * (g * a.transpose() + a * g.transpose());
   }
-  r.tangent = 4 * d;
-  return r;
+  return {stress_of(v, w, gradient, fibres), 4 * d};
 }
 
 }  // namespace valsalva::materials

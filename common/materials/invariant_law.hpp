@@ -33,8 +33,8 @@ class InvariantLaw : public ElasticLaw {
   virtual InvariantResponse derivatives(const Invariants& invariants, int families, double factor) const = 0;
 
   ElasticResponse respond(const Mat3& c, const Fibres& fibres, double factor, Derivatives wanted) const final;
-  PlaneTangent plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
-                     Derivatives wanted) const final;
+  PlaneStress plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor) const final;
+  PlaneTangent plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor) const final;
 };
 
 }  // namespace valsalva::materials

@@ -24,17 +24,17 @@ struct PlaneStress {
 
 struct PlaneTangent {
   PlaneStress at;
-  Eigen::Matrix3d tangent;  ///< dS/dE; unset when only the stress was asked for
+  Eigen::Matrix3d tangent;  ///< dS/dE
 };
-
-enum class Derivatives { stress, tangent };
 
 class PlaneLaw {
  public:
   virtual ~PlaneLaw() = default;
   virtual std::string name() const = 0;
-  virtual PlaneTangent plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
-                             Derivatives wanted) const = 0;
+  virtual PlaneStress plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                                   double factor) const = 0;
+  virtual PlaneTangent plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                                     double factor) const = 0;
 };
 
 }  // namespace valsalva::materials

@@ -5,26 +5,45 @@
 #include "materials/voigt.hpp"
 
 namespace valsalva::materials {
+namespace {
 
-PlaneTangent ElasticLaw::plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
-                               Derivatives wanted) const {
-  const ThicknessStretch c33 = thickness_stretch(c(0, 0) * c(1, 1) - c(0, 1) * c(1, 0));
-  const ElasticResponse space = respond(in_space(c, c33.value), in_space(fibres), factor, wanted);
-  Eigen::Matrix2d cofactor;
-  cofactor << c(1, 1), -c(0, 1), -c(1, 0), c(0, 0);
-  const double s33 = space.stress(2, 2);
+struct Sheet {
+  ThicknessStretch c33;
+  Eigen::Matrix2d cofactor;  // of C: d(det C)/dC
+  ElasticResponse space;
+};
 
-  PlaneTangent r;
-  r.at = {space.energy, space.stress.topLeftCorner<2, 2>() + s33 * c33.first * cofactor, space.exponent,
-          c33.value};
-  if (wanted == Derivatives::stress) return r;
+Sheet sheet_of(const ElasticLaw& law, const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
+               Derivatives wanted) {
+  Sheet s;
+  s.c33 = thickness_stretch(c(0, 0) * c(1, 1) - c(0, 1) * c(1, 0));
+  s.cofactor << c(1, 1), -c(0, 1), -c(1, 0), c(0, 0);
+  s.space = law.respond(in_space(c, s.c33.value), in_space(fibres), factor, wanted);
+  return s;
+}
 
-  const PlaneBlocks d = plane_blocks(space.tangent);
-  const Eigen::Vector3d k = plane_voigt(cofactor), g = c33.first * k;  // dC33/dC
-  r.tangent = d.plane + d.coupling * g.transpose() + g * d.coupling.transpose() +
-              d.thickness * g * g.transpose() +
-              2 * s33 * (c33.second * k * k.transpose() + c33.first * plane_determinant_hessian());
-  return r;
+PlaneStress stress_of(const Sheet& s) {
+  return {s.space.energy,
+          s.space.stress.topLeftCorner<2, 2>() + s.space.stress(2, 2) * s.c33.first * s.cofactor,
+          s.space.exponent, s.c33.value};
+}
+
+}  // namespace
+
+PlaneStress ElasticLaw::plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                                     double factor) const {
+  return stress_of(sheet_of(*this, c, fibres, factor, Derivatives::stress));
+}
+
+PlaneTangent ElasticLaw::plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                                       double factor) const {
+  const Sheet s = sheet_of(*this, c, fibres, factor, Derivatives::tangent);
+  const PlaneBlocks d = plane_blocks(s.space.tangent);
+  const Eigen::Vector3d k = plane_voigt(s.cofactor), g = s.c33.first * k;  // dC33/dC
+  const Eigen::Matrix3d thickness_hessian =
+      s.c33.second * k * k.transpose() + s.c33.first * plane_determinant_hessian();
+  return {stress_of(s), d.plane + d.coupling * g.transpose() + g * d.coupling.transpose() +
+                            d.thickness * g * g.transpose() + 2 * s.space.stress(2, 2) * thickness_hessian};
 }
 
 }  // namespace valsalva::materials

@@ -14,12 +14,12 @@ namespace valsalva::materials {
 
 inline PlaneStress plane_stress(const PlaneLaw& law, const Eigen::Matrix2d& c, const PlaneFibres& fibres,
                                 double factor) {
-  return law.plane(c, fibres, factor, Derivatives::stress).at;
+  return law.plane_stress(c, fibres, factor);
 }
 
 inline PlaneTangent plane_tangent(const PlaneLaw& law, const Eigen::Matrix2d& c, const PlaneFibres& fibres,
                                   double factor) {
-  return law.plane(c, fibres, factor, Derivatives::tangent);
+  return law.plane_tangent(c, fibres, factor);
 }
 
 }  // namespace valsalva::materials

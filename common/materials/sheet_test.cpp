@@ -17,7 +17,7 @@ Eigen::Matrix2d gradient(double stretch1, double stretch2, double shear) {
 SheetState evaluate(const PlaneLaw& law, const PlaneFibres& fibres, double stretch1, double stretch2,
                     double shear, double factor) {
   const Eigen::Matrix2d f = gradient(stretch1, stretch2, shear);
-  const PlaneStress s = law.plane(f.transpose() * f, fibres, factor, Derivatives::stress).at;
+  const PlaneStress s = law.plane_stress(f.transpose() * f, fibres, factor);
   const double stretch3 = std::sqrt(s.c33);
   const Eigen::Matrix2d nominal = f * s.stress;
   return {stretch1,      stretch2,      stretch3,

@@ -92,8 +92,12 @@ ElasticResponse SolidLaw::respond(const Mat3& c, const Fibres& fibres, double fa
   return r;
 }
 
-PlaneTangent SolidLaw::plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
-                             Derivatives wanted) const {
+PlaneStress SolidLaw::plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor) const {
+  return plane_tangent(c, fibres, factor).at;  // Newton has the tangent anyway
+}
+
+PlaneTangent SolidLaw::plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                                     double factor) const {
   constexpr int most_steps = 60;
   constexpr double longest_step = 0.7, tolerance = 1e-12;
   const double det = c.determinant();
@@ -108,13 +112,9 @@ PlaneTangent SolidLaw::plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres
     const double stress = c33 * r.stress(2, 2);
     const double slope = stress + 0.5 * c33 * c33 * d.thickness;
     if (!std::isfinite(stress) || !(d.thickness > 0)) break;
-    if (std::abs(stress) <= tolerance * std::abs(slope)) {
-      PlaneTangent plane;
-      plane.at = {r.energy, r.stress.topLeftCorner<2, 2>(), r.exponent, c33};
-      if (wanted == Derivatives::tangent)
-        plane.tangent = d.plane - d.coupling * d.coupling.transpose() / d.thickness;
-      return plane;
-    }
+    if (std::abs(stress) <= tolerance * std::abs(slope))
+      return {{r.energy, r.stress.topLeftCorner<2, 2>(), r.exponent, c33},
+              d.plane - d.coupling * d.coupling.transpose() / d.thickness};
     const double newton = slope > 0 ? -stress / slope : (stress > 0 ? -longest_step : longest_step);
     log_c33 += std::clamp(newton, -longest_step, longest_step);
   }

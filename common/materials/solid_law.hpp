@@ -46,8 +46,9 @@ class SolidLaw : public PlaneLaw {
 
   /// Plane stress: the C33 with S33 = 0 by Newton in ln C33, and the condensed consistent tangent
   /// D_ab - D_a3 D_3b / D_33. NumericalFailure when no such C33 exists.
-  PlaneTangent plane(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor,
-                     Derivatives wanted) const override;
+  PlaneStress plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres, double factor) const override;
+  PlaneTangent plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
+                             double factor) const override;
 
  private:
   std::shared_ptr<const ElasticLaw> law_;

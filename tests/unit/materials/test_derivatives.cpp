@@ -63,14 +63,14 @@ void check_in_space(const Respond& respond, const Mat3& c, bool exact, const std
 
 void check_in_plane(const PlaneLaw& law, const Eigen::Matrix2d& c, const std::string& what) {
   const PlaneFibres fibres = samples::two_plane_fibres();
-  const PlaneTangent at = law.plane(c, fibres, factor, Derivatives::tangent);
+  const PlaneTangent at = law.plane_tangent(c, fibres, factor);
   expect_second_order(
       [&](double h) {
         Eigen::Vector3d difference;
         for (int k = 0; k < 3; ++k) {
           const Eigen::Matrix2d dc = 2 * h * samples::plane_strain_direction(k);
-          difference[k] = (law.plane(c + dc, fibres, factor, Derivatives::stress).at.energy -
-                           law.plane(c - dc, fibres, factor, Derivatives::stress).at.energy) /
+          difference[k] = (law.plane_stress(c + dc, fibres, factor).energy -
+                           law.plane_stress(c - dc, fibres, factor).energy) /
                           (2 * h);
         }
         return (difference - plane_voigt(at.at.stress)).norm();
@@ -81,10 +81,9 @@ void check_in_plane(const PlaneLaw& law, const Eigen::Matrix2d& c, const std::st
         Eigen::Matrix3d difference;
         for (int k = 0; k < 3; ++k) {
           const Eigen::Matrix2d dc = 2 * h * samples::plane_strain_direction(k);
-          difference.col(k) =
-              (plane_voigt(law.plane(c + dc, fibres, factor, Derivatives::stress).at.stress) -
-               plane_voigt(law.plane(c - dc, fibres, factor, Derivatives::stress).at.stress)) /
-              (2 * h);
+          difference.col(k) = (plane_voigt(law.plane_stress(c + dc, fibres, factor).stress) -
+                               plane_voigt(law.plane_stress(c - dc, fibres, factor).stress)) /
+                              (2 * h);
         }
         return (difference - at.tangent).norm();
       },
