@@ -1,5 +1,6 @@
 #include "output.hpp"
 
+#include "bodies/frame.hpp"
 #include "core/errors.hpp"
 #include "state/checkpoint.hpp"
 
@@ -54,12 +55,8 @@ state::State snapshot(const StageContext& context, const Simulation& s, const In
   out.meshes["frame"] = std::move(frame);
   if (placed) {
     const structure::Body& body = s.system().body("frame");
-    std::vector<double> rotation;
-    for (int a = 0; a < body.count; ++a) {
-      const Eigen::Quaterniond& q = s.system().state.rotation[body.rotation_offset + a];
-      rotation.insert(rotation.end(), {q.w(), q.x(), q.y(), q.z()});
-    }
-    out.restart["frame/rotation"] = Array::of(std::move(rotation), {static_cast<std::size_t>(body.count), 4});
+    out.restart["frame/rotation"] = bodies::rotation_array(
+        std::span(s.system().state.rotation).subspan(body.rotation_offset, body.count));
     const Points& spin = s.system().state.angular_velocity;
     out.restart["frame/angular_velocity"] = Array::of(
         Points(spin.begin() + body.rotation_offset, spin.begin() + body.rotation_offset + body.count));

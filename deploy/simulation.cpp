@@ -171,7 +171,7 @@ void Simulation::start(const Parameters& p, double damping) {
   structure::IntegratorSettings settings;
   settings.step_s = p.step_s;
   settings.damping_per_s = damping;
-  settings.scaling_interval = 5;  // fibres stiffen within tens of steps
+  settings.scaling_interval = 1;  // fibres stiffen within a few steps when the device is let go
   step_s_ = p.step_s;
   integrator_ = std::make_unique<structure::Integrator>(*system_, terms_, settings);
 }

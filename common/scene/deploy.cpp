@@ -21,11 +21,11 @@ void declare_deploy(Schema& schema) {
 
   schema.real("deploy.expand_ms", {50, 60, 80, 100}, positive(),
               "Duration of expansion under release damping (all at once; a sheath sets its own time)");
-  schema.real("deploy.release_damping_per_s", 1000, not_negative(),
+  schema.real("deploy.release_damping_per_s", 700, not_negative(),
               "Mass-proportional damping during expansion: the delivery system's friction (assumed)");
   schema.real("deploy.settle_ms", {40, 60, 80, 100}, positive(),
               "Duration of settling; pressure and hold are taken away over its first half");
-  schema.real("deploy.settle_damping_per_s", 300, not_negative(), "Mass-proportional damping while settling");
+  schema.real("deploy.settle_damping_per_s", 500, not_negative(), "Mass-proportional damping while settling");
   schema.real(
       "deploy.hold_stiffness_N_per_mm", 20, not_negative(),
       "The delivery system holds the skirt's edge at its depth with this stiffness until settling; 0: free");
@@ -35,7 +35,7 @@ void declare_deploy(Schema& schema) {
   schema.real(
       "deploy.wall_stiffness_kPa_per_mm", 10000, positive(),
       "Pressure of the wall per overlap on struts: sets the contact tolerance, not the wall's compliance");
-  schema.real("deploy.tissue_wall_stiffness_kPa_per_mm", 5000, positive(), "The same on leaflets and skirt");
+  schema.real("deploy.tissue_wall_stiffness_kPa_per_mm", 15000, positive(), "The same on leaflets and skirt");
   schema.real(
       "deploy.contact_modulus_kPa", 200, positive(),
       "Stiffness scale of contact between bodies (docs of contact; reached at half the contact distance)");
