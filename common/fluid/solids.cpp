@@ -74,7 +74,6 @@ void Solids::set_lumen(const Distance& distance) {
   const Vec3 margin = Vec3::Constant(slab_.grid.h);
   mark(wall, slab_.grid.low() - margin, slab_.grid.high() + margin,
        [&](const Vec3& x) { return !(distance(x) < 0); });
-  has_wall_ = true;
 }
 
 void Solids::set_lumen(const geometry::GridSdf& distance) {
@@ -136,16 +135,22 @@ long Solids::faces(int body) const {
   return count;
 }
 
-void Solids::list_held_faces() {
+void Solids::list_faces() {
   const Grid& grid = slab_.grid;
   const Field shape(slab_);
   for (int d = 0; d < 3; ++d) {
     held_[d].clear();
+    walls_[d].clear();
     const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
     for (int k = 0; k < planes; ++k) {
       for (int j = 0; j < grid.cells[1]; ++j) {
         for (int i = 0; i < grid.cells[0]; ++i) {
           const std::uint8_t of = owner(d, i, j, k);
+          if (of == 1 + wall) {
+            const std::ptrdiff_t at = shape.index(i, j, k);
+            if (i == 0 || owner(d, i - 1, j, k) != of) walls_[d].push_back({at, 0});
+            ++walls_[d].back().count;
+          }
           if (of <= 1 + wall) continue;
           held_[d].push_back({shape.index(i, j, k), static_cast<std::uint8_t>(of - 1),
                               grid.position(d, i, j, k + slab_.first)});
@@ -157,30 +162,23 @@ void Solids::list_held_faces() {
 }
 
 void Solids::penalise(double dt, double eta, FaceField& velocity) {
-  if (!listed_) list_held_faces();
+  if (!listed_) list_faces();
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   const double ratio = dt / eta, keep = 1 / (1 + ratio);
   const double mass_rate = density_ * std::pow(slab_.grid.h, 3) / dt;
-  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   for (int d = 0; d < 3; ++d) {
-    if (has_wall_) {
-      double lost = 0;
-      const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
-      for (int k = 0; k < planes; ++k) {
-        for (int j = 0; j < ny; ++j) {
-          const std::uint8_t* of = owner_row(d, j, k);
-          double* u = velocity[d].row(j, k);
-#pragma omp simd reduction(+ : lost)
-          for (int i = 0; i < nx; ++i) {
-            const double after = (of[i] == 1 + wall ? keep : 1.0) * u[i];
-            lost += u[i] - after;
-            u[i] = after;
-          }
-        }
-      }
-      force_[wall][d] += mass_rate * lost;
-    }
     double* u = velocity[d].data().data();
+    double lost = 0;
+    for (const Run& run : walls_[d]) {
+      double* at = u + run.first;
+#pragma omp simd reduction(+ : lost)
+      for (int i = 0; i < run.count; ++i) {
+        const double after = keep * at[i];
+        lost += at[i] - after;
+        at[i] = after;
+      }
+    }
+    force_[wall][d] += mass_rate * lost;
     for (const Held& face : held_[d]) {
       const double after = keep * (u[face.index] + ratio * motion_[face.body].at(face.position)[d]);
       force_[face.body][d] += mass_rate * (u[face.index] - after);

@@ -70,21 +70,26 @@ class Solids {
     std::uint8_t body;
     Vec3 position;
   };
+  struct Run {  // faces of the wall side by side in x
+    std::ptrdiff_t first;
+    int count;
+  };
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * slab_.grid.cells[1] + j) * slab_.grid.cells[0] + i;
   }
   template <class Inside>
   void mark(int body, const Vec3& low, const Vec3& high, const Inside& inside);
   void check_body(int body) const;
-  void list_held_faces();
+  void list_faces();
 
   const Slab& slab_;
   double density_;
-  bool has_wall_ = false, listed_ = true;
+  bool listed_ = true;
   std::vector<std::string> names_;
   std::vector<RigidMotion> motion_;
   std::vector<Vec3> force_;  ///< of this rank
   std::array<std::vector<std::uint8_t>, 4> owner_;
+  std::array<std::vector<Run>, 3> walls_;
   std::array<std::vector<Held>, 3> held_;  ///< faces of bodies other than the wall
 };
 
