@@ -92,7 +92,7 @@ PlaneTangent InvariantLaw::plane_tangent(const Eigen::Matrix2d& c, const PlaneFi
   const Eigen::Matrix2d gradient = i1_gradient(v);
   const Eigen::Vector3d g = plane_voigt(gradient);
   const Eigen::Vector3d k = plane_voigt(v.cofactor);
-  const Eigen::Matrix3d& det_hessian = plane_determinant_hessian();
+  const Eigen::Matrix3d det_hessian = plane_determinant_hessian();
   Eigen::Matrix3d d = w.d11 * g * g.transpose();
   d += w.d1 * (v.c33.second * k * k.transpose() + v.c33.first * det_hessian);
   if (uses_i2(w)) {

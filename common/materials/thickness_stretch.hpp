@@ -19,9 +19,8 @@ inline ThicknessStretch thickness_stretch(double det) {
 }
 
 /// Second derivative of det C = C11 C22 - C12 C21 in Voigt order 11, 22, 12.
-inline const Eigen::Matrix3d& plane_determinant_hessian() {
-  static const Eigen::Matrix3d hessian = (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, -0.5).finished();
-  return hessian;
+inline Eigen::Matrix3d plane_determinant_hessian() {
+  return (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, -0.5).finished();
 }
 
 }  // namespace valsalva::materials
