@@ -10,7 +10,7 @@ packages="
   libcgal-dev libgmsh-dev libopenvdb-dev libboost-iostreams-dev libboost-system-dev libtbb-dev libblosc-dev
   libjemalloc-dev libinsighttoolkit5-dev libpng-dev zlib1g-dev
   libjs-three
-  chromium python3-vtk9 python3-h5py clang-format clang-tidy
+  chromium python3-vtk9 python3-h5py python3-numpy python3-scipy python3-matplotlib clang-format clang-tidy
 "
 missing=""
 for package in $packages; do
