@@ -98,10 +98,9 @@ Parameters read_parameters(const Case& scene) {
   p.coupling.limits.cfl = scene.real("cycle.max_cfl");
   p.coupling.probe_interval = static_cast<int>(scene.integer("cycle.probe_interval"));
   p.coupling.probe_iterations = static_cast<int>(scene.integer("cycle.probe_iterations"));
-  p.repulsion.contact = {scene.real("cycle.repulsion_kPa") * units::pa_per_kPa,
+  p.spacing.repulsion = {scene.real("cycle.repulsion_kPa") * units::pa_per_kPa,
                          scene.real("cycle.repulsion_cells") * p.h};
-  p.repulsion.parting = {scene.real("cycle.parting_kPa") * units::pa_per_kPa,
-                         scene.real("cycle.parting_cells") * p.h};
+  p.spacing.standoff_mm = scene.real("cycle.standoff_cells") * p.h;
   p.tissue = tissue_of(scene, p.device ? "device" : "native");
   p.masks = {scene.real("cycle.strut_mask_cells"), scene.real("cycle.shell_mask_cells"),
              scene.real("cycle.edge_mask_cells")};

@@ -42,7 +42,7 @@ struct Parameters {
   double margin_cells = 2;
   fluid::FlowParameters fluid;
   coupling::ImmersedFlowSettings coupling;
-  coupling::RepulsionParameters repulsion;
+  coupling::Spacing spacing;
   Tissue tissue;
   Masks masks;
   CirculationParameters circulation;

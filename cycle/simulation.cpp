@@ -21,7 +21,7 @@ std::unique_ptr<coupling::ImmersedShell> shell_of(MPI_Comm comm, const Leaflets&
   structure::Shell shell(l.mesh, std::make_shared<materials::Hgo>(p.tissue.law),
                          structure::Bending{p.tissue.bending_modulus_Pa, 0.5});
   return std::make_unique<coupling::ImmersedShell>(comm, std::move(shell), l.rest, l.points, l.attached,
-                                                   l.leaflet, p.repulsion);
+                                                   l.leaflet, p.spacing);
 }
 
 /// Everybody gets what rank 0 has.

@@ -38,7 +38,7 @@ void ImmersedFlow::probe() {
 
 double ImmersedFlow::plan(double at_most) {
   if (shell_) {
-    transfer_.locate(shell_->x());
+    transfer_.locate(shell_->coupling_points());
     if (steps_ % settings_.probe_interval == 0) probe();
     if (shell_->largest_stretch() > settings_.largest_stretch)
       throw NumericalFailure("coupling: a leaflet edge is {:.3g} times as long as in its stress-free shape",

@@ -5,7 +5,8 @@
 //   method;  x^(n+1) = x^n + dt J u^(n+1) a step whose local CFL number, dt max(|u|+|v|+|w|)/h of u^(n+1),
 //   exceeds the limit is undone and repeated with a smaller dt (and AB2 begins anew), so that the limit holds
 //   for every step
-// with S and J at x^n: symplectic Euler for the structure, so that no energy is put in by the lag.
+// with S and J at x^n (leaflets that touch: at their standoff, standoff.hpp): symplectic Euler for the
+// structure, so that no energy is put in by the lag.
 #pragma once
 
 #include <functional>

@@ -1,9 +1,11 @@
 #include "coupling/immersed_shell.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "coupling/standoff.hpp"
 
 namespace valsalva::coupling {
 
@@ -19,20 +21,38 @@ void sum_over_ranks(MPI_Comm comm, int ranks, Points& values) {
 
 ImmersedShell::ImmersedShell(MPI_Comm comm, structure::Shell shell, Points rest, Points start,
                              std::vector<std::uint8_t> clamped, std::vector<int> group,
-                             const RepulsionParameters& repulsion)
+                             const Spacing& spacing)
     : comm_(comm),
       part_{mpi::rank(comm), mpi::size(comm)},
       shell_(std::move(shell)),
       tangent_(shell_, part_),
-      repulsion_(repulsion, std::move(rest), start, std::move(group), shell_.lumped_area()),
+      standoff_(spacing.standoff_mm),
+      near_(std::max(spacing.repulsion.range_mm, spacing.standoff_mm), std::move(rest), start,
+            std::move(group)),
+      repulsion_(spacing.repulsion, shell_.lumped_area()),
       x_(std::move(start)),
       clamped_(std::move(clamped)) {
   VALSALVA_ASSERT(x_.size() == static_cast<std::size_t>(shell_.nodes()) && clamped_.size() == x_.size());
+  moved();
 }
 
 void ImmersedShell::set_x(Points x) {
   VALSALVA_ASSERT(x.size() == x_.size());
   x_ = std::move(x);
+  moved();
+}
+
+void ImmersedShell::moved() {
+  pairs_ = &near_.find(x_);
+  coupled_ = x_;
+  if (!(standoff_ > 0)) return;
+  Points normal(x_.size(), Vec3::Zero());
+  for (const Triangle& t : shell_.mesh().triangles) {
+    const Vec3 twice_area = (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]);
+    for (int a : t) normal[a] += twice_area;
+  }
+  for (Vec3& n : normal) n.normalize();
+  stand_off(standoff_, x_, normal, *pairs_, coupled_);
 }
 
 void ImmersedShell::forces(Points& out) {
@@ -42,7 +62,7 @@ void ImmersedShell::forces(Points& out) {
   pull_.setZero();
   for (std::size_t a = 0; a < x_.size(); ++a)
     if (clamped_[a]) pull_ += out[a];
-  repulsion_.add_forces(x_, out);
+  repulsion_.add_forces(x_, *pairs_, out);
   for (std::size_t a = 0; a < x_.size(); ++a)
     if (clamped_[a]) out[a].setZero();
 }
@@ -50,7 +70,7 @@ void ImmersedShell::forces(Points& out) {
 void ImmersedShell::update_tangent() {
   tangent_.update(x_);
   Points ignored(x_.size(), Vec3::Zero());
-  repulsion_.add_forces(x_, ignored);
+  repulsion_.add_forces(x_, *pairs_, ignored);
 }
 
 void ImmersedShell::tangent_product(const Points& direction, Points& out) const {
@@ -75,6 +95,7 @@ void ImmersedShell::move(const Points& velocity, double dt) {
           a, x_[a].x(), x_[a].y(), x_[a].z(), velocity[a].norm(), fastest_mm_per_s);
     x_[a] += dt * velocity[a];
   }
+  moved();
 }
 
 double ImmersedShell::largest_stretch() const {

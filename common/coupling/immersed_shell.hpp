@@ -6,23 +6,31 @@
 #include <vector>
 
 #include "core/mpi.hpp"
+#include "coupling/near_pairs.hpp"
 #include "coupling/repulsion.hpp"
 #include "structure/shell.hpp"
 
 namespace valsalva::coupling {
 
+/// Between leaflets.
+struct Spacing {
+  RepulsionParameters repulsion;
+  double standoff_mm = 0;  ///< standoff.hpp; 0: none
+};
+
 class ImmersedShell {
  public:
-  /// rest: where neighbours do not repel each other. clamped: one a node. group: leaflet of each node, for
-  /// the repulsion between leaflets.
+  /// rest: where neighbours neither repel each other nor stand off. clamped: one a node. group: leaflet of
+  /// each node.
   ImmersedShell(MPI_Comm comm, structure::Shell shell, Points rest, Points start,
-                std::vector<std::uint8_t> clamped, std::vector<int> group,
-                const RepulsionParameters& repulsion);
+                std::vector<std::uint8_t> clamped, std::vector<int> group, const Spacing& spacing);
   ImmersedShell(const ImmersedShell&) = delete;
   ImmersedShell& operator=(const ImmersedShell&) = delete;
 
   const structure::Shell& shell() const { return shell_; }
   const Points& x() const { return x_; }
+  /// Where the shell couples to the grid (standoff.hpp).
+  const Points& coupling_points() const { return coupled_; }
   void set_x(Points x);
   bool clamped(std::size_t node) const { return clamped_[node] != 0; }
 
@@ -45,12 +53,17 @@ class ImmersedShell {
   double largest_stretch() const;
 
  private:
+  void moved();
+
   MPI_Comm comm_;
   structure::Part part_;
   structure::Shell shell_;
   structure::ShellTangent tangent_;
+  double standoff_;
+  NearPairs near_;
   Repulsion repulsion_;
-  Points x_;
+  Points x_, coupled_;
+  const std::vector<NearPair>* pairs_ = nullptr;  // of near_, at x_
   std::vector<std::uint8_t> clamped_;
   Vec3 pull_ = Vec3::Zero();
   mutable Points free_direction_;

@@ -30,9 +30,10 @@ void declare_cycle(Schema& schema) {
   schema.real("cycle.repulsion_kPa", 200, not_negative(),
               "Repulsion between leaflets that touch; two sheets push each other with at most 0.44 of it");
   schema.real("cycle.repulsion_cells", 0.6, {0.05, 3}, "Its range in cells");
-  schema.real("cycle.parting_kPa", 10, not_negative(),
-              "The same of the weak repulsion that lets closed leaflets part, which the grid alone does not");
-  schema.real("cycle.parting_cells", 1.5, {0.05, 4}, "Its range in cells");
+  schema.real(
+      "cycle.standoff_cells", 1.3, {0, 3},
+      "Leaflets nearer to each other than this many cells couple to the grid as if they were this far "
+      "apart, so that they can part; 0: where they are");
   schema.real("cycle.anchor_drag_N_s_per_mm", 0.05, positive(),
               "The device slides against the wall at (force - friction capacity) / this (assumed)");
   schema.integer("cycle.history_interval", 10, {1, 100000}, "Steps between rows of history.csv");

@@ -35,7 +35,7 @@ double milliseconds_per_step(double h, int steps) {
   flow.solids().mark_segments(flow.solids().add_body("ring"), mesh.shell.reference, mesh.attachment, 0.8 * h);
   auto shell = std::make_unique<coupling::ImmersedShell>(
       MPI_COMM_WORLD, test::pericardial_shell(mesh), mesh.shell.reference, mesh.shell.reference,
-      mesh.attached, mesh.leaflet, coupling::RepulsionParameters{{2e5, 0.6 * h}, {1e4, 1.5 * h}});
+      mesh.attached, mesh.leaflet, coupling::Spacing{{2e5, 0.6 * h}, 1.3 * h});
   coupling::ImmersedFlow system(flow, std::move(shell), {});
   double start = 0;
   for (int n = 0; n < steps + 8; ++n) {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "coupling/repulsion.hpp"
+#include "coupling/standoff.hpp"
 
 namespace {
 
@@ -13,6 +14,16 @@ struct Cloud {
   Points x, start;  // far apart at the start
   std::vector<int> group;
   std::vector<double> area;
+};
+
+/// Repulsion with its own search.
+struct Pushing {
+  NearPairs near;
+  Repulsion law;
+  Pushing(const RepulsionParameters& parameters, const Points& rest, const Points& start,
+          const std::vector<int>& group, const std::vector<double>& area)
+      : near(parameters.range_mm, rest, start, group), law(parameters, area) {}
+  double add_forces(const Points& x, Points& force) { return law.add_forces(x, near.find(x), force); }
 };
 
 Cloud cloud() {
@@ -30,7 +41,7 @@ Cloud cloud() {
 
 TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
   const Cloud c = cloud();
-  Repulsion repulsion({{2e4, 0.7}, {3e3, 1.1}}, c.start, c.start, c.group, c.area);
+  Pushing repulsion({2e4, 0.7}, c.start, c.start, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_GT(repulsion.add_forces(c.x, force), 0);
   Vec3 total = Vec3::Zero();
@@ -50,7 +61,7 @@ TEST(Repulsion, IsTheGradientOfItsEnergyAndBalanced) {
 
 TEST(Repulsion, TangentIsSymmetricAndBoundsTheSlopeAlongEachPair) {
   const Cloud c = cloud();
-  Repulsion repulsion({{2e4, 0.7}, {3e3, 1.1}}, c.start, c.start, c.group, c.area);
+  Pushing repulsion({2e4, 0.7}, c.start, c.start, c.group, c.area);
   Points ignored(c.x.size(), Vec3::Zero()), y(c.x.size()), z(c.x.size());
   repulsion.add_forces(c.x, ignored);
   std::mt19937 random(9);
@@ -60,8 +71,8 @@ TEST(Repulsion, TangentIsSymmetricAndBoundsTheSlopeAlongEachPair) {
     z[a] = Vec3(normal(random), normal(random), normal(random));
   }
   Points ky(y.size(), Vec3::Zero()), kz = ky;
-  repulsion.add_tangent_product(y, ky);
-  repulsion.add_tangent_product(z, kz);
+  repulsion.law.add_tangent_product(y, ky);
+  repulsion.law.add_tangent_product(z, kz);
   double yz = 0, zy = 0, yy = 0, slope = 0;
   const double e = 1e-6;
   Points plus = c.x, minus = c.x, up = ignored, down = ignored;
@@ -82,7 +93,7 @@ TEST(Repulsion, TangentIsSymmetricAndBoundsTheSlopeAlongEachPair) {
 
 TEST(Repulsion, FindsEveryPair) {
   const Cloud c = cloud();
-  Repulsion repulsion({{1e4, 0.5}, {0, 0.1}}, c.start, c.start, c.group, c.area);
+  Pushing repulsion({1e4, 0.5}, c.start, c.start, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero()), expected = force;
   repulsion.add_forces(c.x, force);
   double nearest = 0.5;
@@ -96,30 +107,30 @@ TEST(Repulsion, FindsEveryPair) {
       nearest = std::min(nearest, apart.norm());
     }
   for (std::size_t a = 0; a < c.x.size(); ++a) EXPECT_LT((force[a] - expected[a]).norm(), 1e-8);
-  EXPECT_DOUBLE_EQ(repulsion.nearest(), nearest);
+  EXPECT_DOUBLE_EQ(repulsion.law.nearest(), nearest);
 }
 
 TEST(Repulsion, LeavesOneLeafletAlone) {
   const Cloud c = cloud();
-  Repulsion repulsion({{1e4, 0.5}, {0, 0.1}}, c.start, c.start, std::vector<int>(c.x.size(), 0), c.area);
+  Pushing repulsion({1e4, 0.5}, c.start, c.start, std::vector<int>(c.x.size(), 0), c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
-  EXPECT_EQ(repulsion.nearest(), 0.5);
+  EXPECT_EQ(repulsion.law.nearest(), 0.5);
 }
 
 TEST(Repulsion, NeighboursAtTheStartDoNotPush) {
   const Cloud c = cloud();
-  Repulsion repulsion({{1e4, 0.5}, {0, 0.1}}, c.x, c.x, c.group, c.area);
+  Pushing repulsion({1e4, 0.5}, c.x, c.x, c.group, c.area);
   Points force(c.x.size(), Vec3::Zero());
   EXPECT_EQ(repulsion.add_forces(c.x, force), 0);
 }
 
 TEST(Repulsion, RangesGrowFromTheDistanceOfTheStart) {
   const Points rest{{0, 0, 0}, {5, 0, 0}}, start{{0, 0, 0}, {0.1, 0, 0}};
-  Repulsion repulsion({{1e4, 0.5}, {0, 0.1}}, rest, start, {0, 1}, {1, 1});
+  Pushing repulsion({1e4, 0.5}, rest, start, {0, 1}, {1, 1});
   const auto push = [&](double growth) {
     Points force(2, Vec3::Zero());
-    repulsion.set_growth(growth);
+    repulsion.law.set_growth(growth);
     repulsion.add_forces(start, force);
     EXPECT_EQ(force[0], Vec3(-force[1]));
     return force[1].x();
@@ -144,13 +155,38 @@ TEST(Repulsion, SheetsPushWithThePressureOfTheHeaderOnAnyMesh) {
     Points far = x;
     for (std::size_t a = 0; a < x.size(); ++a) far[a].z() += 10 * group[a];
     const double area = spacing * spacing;
-    Repulsion repulsion({{p, r}, {0, r}}, far, far, group, std::vector<double>(x.size(), area));
+    Pushing repulsion({p, r}, far, far, group, std::vector<double>(x.size(), area));
     Points force(x.size(), Vec3::Zero());
     repulsion.add_forces(x, force);
     const int middle = (n / 2) * (n + 1) + n / 2;
     const double expected = -3 * p * D / r * (1 - D / r) * (1 - D / r);
     EXPECT_NEAR(force[middle].z() / area, expected, 0.03 * std::abs(expected)) << spacing;
   }
+}
+
+TEST(Standoff, SheetsCoupleAsFarApartAsItSays) {
+  Points x;
+  std::vector<int> group;
+  for (int sheet = 0; sheet < 2; ++sheet)
+    for (int i = 0; i <= 20; ++i)
+      for (int j = 0; j <= 20; ++j) {
+        x.emplace_back(0.2 * i, 0.2 * j, 0.1 * sheet);
+        group.push_back(sheet);
+      }
+  Points far = x, y;
+  for (std::size_t a = 0; a < x.size(); ++a) far[a].z() += 10 * group[a];
+  const Points up(x.size(), Vec3::UnitZ());
+  NearPairs near(1.3, far, far, group);
+  stand_off(1.3, x, up, near.find(x), y);
+  for (std::size_t a = 0; a < 441; ++a) {
+    EXPECT_NEAR(y[a + 441].z() - y[a].z(), 1.3, 1e-12);
+    EXPECT_NEAR(y[a + 441].z() + y[a].z(), 0.1, 1e-12);
+  }
+  stand_off(0, x, up, near.find(x), y);
+  EXPECT_EQ(y, x);
+  NearPairs neighbours(1.3, x, x, group);  // near at rest: they stay where they are
+  stand_off(1.3, x, up, neighbours.find(x), y);
+  for (std::size_t a = 0; a < 441; ++a) EXPECT_LT((y[a] - x[a]).norm(), 1.3);
 }
 
 }  // namespace

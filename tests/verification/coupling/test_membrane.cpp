@@ -70,7 +70,7 @@ TEST(ClosedMembrane, KeepsItsVolumeAndCarriesLaplacesPressure) {
   structure::Shell shell(mesh, std::make_shared<materials::NeoHookean>(shear), {});
   auto immersed = std::make_unique<coupling::ImmersedShell>(
       MPI_COMM_SELF, std::move(shell), start, start, std::vector<std::uint8_t>(start.size(), 0),
-      std::vector<int>(start.size(), -1), coupling::RepulsionParameters{});
+      std::vector<int>(start.size(), -1), coupling::Spacing{});
   coupling::ImmersedFlow system(flow, std::move(immersed), {});
   const double before = volume(start, mesh.triangles);
   for (double t = 0; t < 5e-3;) t += system.step(1e-4).dt_s;

@@ -8,26 +8,13 @@
 
 #include "core/units.hpp"
 #include "coupling/immersed_flow.hpp"
+#include "mpi_for_all.hpp"
 #include "synthetic_valve.hpp"
 
 namespace {
 
 using namespace valsalva;
 using units::pa_per_mmHg;
-
-class MpiForAll : public testing::Environment {
- public:
-  void SetUp() override {
-    int argc = 0;
-    char** argv = nullptr;
-    session_ = std::make_unique<mpi::Session>(argc, argv);
-  }
-  void TearDown() override { session_.reset(); }
-
- private:
-  std::unique_ptr<mpi::Session> session_;
-};
-const auto* const environment = testing::AddGlobalTestEnvironment(new MpiForAll);
 
 constexpr double h = 1.5, radius = 12.5;
 
@@ -50,7 +37,7 @@ struct Rig {
     flow->solids().mark_segments(ring, mesh.shell.reference, mesh.attachment, 0.8 * h);
     auto shell = std::make_unique<coupling::ImmersedShell>(
         MPI_COMM_SELF, test::pericardial_shell(mesh), mesh.shell.reference, mesh.shell.reference,
-        mesh.attached, mesh.leaflet, coupling::RepulsionParameters{{2e5, 0.6 * h}, {1e4, 1.5 * h}});
+        mesh.attached, mesh.leaflet, coupling::Spacing{{2e5, 0.6 * h}, 1.3 * h});
     system =
         std::make_unique<coupling::ImmersedFlow>(*flow, std::move(shell), coupling::ImmersedFlowSettings{});
   }
