@@ -4,6 +4,7 @@
 #   make run CASE=name-or-path [FIDELITY=draft|standard|fine|reference] [NP=2] [SET="table.key=value ..."]
 #   make segment|mesher|stent|crimp|deploy|cycle|report CASE=...   that stage, when its inputs changed [FORCE=1] [RESUME=1]
 #   make cohort COHORT=file.csv [JOBS=n]
+#   make verify                       the verification programs, with a table in runs/verify
 #   make setup | build | bench | lint | reference | clean
 
 CASE     ?= demo
@@ -20,7 +21,7 @@ OPTIONS  = $(if $(FIDELITY),--fidelity $(FIDELITY)) $(if $(NP),--ranks $(NP)) $(
            $(if $(RESUME),--resume) $(foreach pair,$(SET),--set $(pair))
 STAGES   = segment mesher stent crimp deploy cycle report
 
-.PHONY: demo test setup build run $(STAGES) cohort bench lint format reference clean
+.PHONY: demo test setup build run $(STAGES) cohort verify bench lint format reference clean
 
 demo: build
 	$(PIPELINE) run demo --fidelity $(or $(FIDELITY),draft) $(if $(NP),--ranks $(NP)) $(if $(FORCE),--force)
@@ -43,6 +44,10 @@ $(STAGES): build
 
 cohort: build
 	$(PIPELINE) cohort $(COHORT) --jobs $(JOBS) $(OPTIONS)
+
+verify: build
+	mkdir -p runs/verify
+	cd build && ctest -L verification --output-on-failure --output-junit $(CURDIR)/runs/verify/verify.xml
 
 bench: build
 	python3 pipelines/bench.py
