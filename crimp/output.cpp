@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bodies/frame.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "measures.hpp"
@@ -59,9 +60,7 @@ state::State snapshot(const StageContext& context, const state::State& stent, co
     mesh.point_data["velocity"] = Array::of(slice(now.v, body));
     out.restart[body.name + "/velocity"] = Array::of(slice(now.v, body));
   }
-  std::vector<double> rotation;
-  for (const auto& q : now.rotation) rotation.insert(rotation.end(), {q.w(), q.x(), q.y(), q.z()});
-  out.restart["frame/rotation"] = Array::of(std::move(rotation), {now.rotation.size(), 4});
+  out.restart["frame/rotation"] = bodies::rotation_array(now.rotation);
   out.restart["frame/angular_velocity"] = Array::of(now.angular_velocity);
   out.restart["crimp/diameter_mm"] = Array::scalar(2 * s.crimper_radius_mm());
   out.restart["crimp/radius_mm"] = Array::scalar(s.crimper_radius_mm());

@@ -1,5 +1,6 @@
 #include "anatomy_state.hpp"
 
+#include "bodies/level_set.hpp"
 #include "core/errors.hpp"
 
 namespace valsalva::mesher {
@@ -13,31 +14,14 @@ std::vector<double> numbers(const state::State& segment, const std::string& name
   return values;
 }
 
-geometry::GridSdf grid_of(const state::State& segment, const std::string& name) {
-  const state::Array& array = segment.array(name);
-  if (array.shape.size() != 3)
-    throw InputError("{}: {} has {} dimensions; expected 3 (nz, ny, nx)", segment.source, name,
-                     array.shape.size());
-  geometry::GridSdf grid;
-  for (int d = 0; d < 3; ++d) grid.dimensions[d] = static_cast<int>(array.shape[2 - d]);
-  const auto origin = numbers(segment, "levelset/origin_mm", 3);
-  grid.origin = Vec3(origin[0], origin[1], origin[2]);
-  grid.spacing = segment.array("levelset/spacing_mm").number("levelset/spacing_mm");
-  if (!(grid.spacing > 0))
-    throw InputError("{}: levelset/spacing_mm is {}; expected a positive length", segment.source,
-                     grid.spacing);
-  grid.values = array.floats(name);
-  return grid;
-}
-
 }  // namespace
 
 AnatomyState anatomy_of(const state::State& segment) {
   AnatomyState anatomy;
   const state::Mesh& lumen = segment.mesh("lumen");
   anatomy.surface = {lumen.points, lumen.triangles("lumen of " + segment.source)};
-  anatomy.lumen = grid_of(segment, "levelset/lumen");
-  if (segment.has_array("levelset/calcium")) anatomy.calcium = grid_of(segment, "levelset/calcium");
+  anatomy.lumen = bodies::read_level_set(segment, "lumen");
+  if (segment.has_array("levelset/calcium")) anatomy.calcium = bodies::read_level_set(segment, "calcium");
   const auto angles = numbers(segment, "anatomy/commissure_angles_rad", 3);
   anatomy.commissure_angles_rad = {angles[0], angles[1], angles[2]};
   const auto z = numbers(segment, "anatomy/z_mm", 6);

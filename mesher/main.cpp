@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bodies/shell.hpp"
 #include "core/errors.hpp"
 #include "core/log.hpp"
 #include "core/stage.hpp"
@@ -91,17 +92,11 @@ std::vector<double> stiffness_factors(const NativeValve& valve, const geometry::
   return factors;
 }
 
-void put_valve(state::State& out, const NativeValve& valve) {
-  state::Mesh mesh = state::Mesh::of_triangles(valve.mesh.points, valve.mesh.triangles);
-  mesh.point_data["reference"] = Array::of(valve.mesh.points);
-  mesh.point_data["thickness_mm"] = Array::of(valve.thickness_mm);
-  mesh.point_data["attached"] =
-      Array::of(std::vector<std::int64_t>(valve.attached.begin(), valve.attached.end()));
-  mesh.cell_data["leaflet"] =
-      Array::of(std::vector<std::int64_t>(valve.leaflet.begin(), valve.leaflet.end()));
-  mesh.cell_data["fibre1"] = Array::of(valve.fibres.first);
-  mesh.cell_data["fibre2"] = Array::of(valve.fibres.second);
-  out.meshes["native_leaflets"] = std::move(mesh);
+state::Mesh state_mesh(const NativeValve& valve, const std::vector<double>& stiffness_factor) {
+  const structure::ShellMesh shell{valve.mesh.points,  valve.mesh.triangles, valve.thickness_mm,
+                                   valve.fibres.first, valve.fibres.second,  stiffness_factor};
+  return bodies::shell_mesh(valve.mesh.points, shell, {valve.attached.begin(), valve.attached.end()},
+                            {valve.leaflet.begin(), valve.leaflet.end()});
 }
 
 void report_valve(Summary& summary, const NativeValve& valve, const LeafletProportions& p, double edge_mm) {
@@ -151,15 +146,15 @@ void add_native_valve(state::State& out, StageContext& context, const AnatomySta
   const double edge_mm = scene.real("mesh.leaflet_edge_mm");
   const NativeValve valve = fit_native_valve(root, p, thickness_of(scene), anatomy.commissure_angles_rad,
                                              edge_mm, scene.real("native.fibre_angle_deg"), anatomy.lumen);
-  put_valve(out, valve);
+  std::vector<double> factors;
   if (anatomy.calcium) {
-    const auto factors = stiffness_factors(valve, *anatomy.calcium, scene.real("native.calcium_reach_mm"),
-                                           scene.real("native.calcium_stiffness_factor"));
+    factors = stiffness_factors(valve, *anatomy.calcium, scene.real("native.calcium_reach_mm"),
+                                scene.real("native.calcium_stiffness_factor"));
     context.summary.metrics["leaflet_calcified_fraction"] =
         double(std::count_if(factors.begin(), factors.end(), [](double f) { return f > 1; })) /
         factors.size();
-    out.meshes["native_leaflets"].cell_data["stiffness_factor"] = Array::of(factors);
   }
+  out.meshes["native_leaflets"] = state_mesh(valve, factors);
   report_valve(context.summary, valve, p, edge_mm);
   log::info(
       "native leaflets: {} triangles, free edge {:.1f} mm, length {:.1f} mm, commissures at z = {:.1f} mm",

@@ -1,5 +1,6 @@
 // valsalva-segment: from an image to the annulus frame, the level set of the lumen and its measurements.
 #include "anatomy.hpp"
+#include "bodies/level_set.hpp"
 #include "core/errors.hpp"
 #include "core/log.hpp"
 #include "core/provenance.hpp"
@@ -49,11 +50,6 @@ geometry::TriMesh closed_surface(const Lumen& lumen) {
       capped.values[n] = std::max(capped.values[n], beyond);
   }
   return geometry::zero_surface(capped);
-}
-
-state::Array array_of(const GridSdf& grid) {
-  return state::Array::of(grid.values, {std::size_t(grid.dimensions[2]), std::size_t(grid.dimensions[1]),
-                                        std::size_t(grid.dimensions[0])});
 }
 
 nlohmann::json json_of(const geometry::SectionFigures& f, double z) {
@@ -134,13 +130,9 @@ void fill_state(state::State& result, const Lumen& lumen, const Root& root, cons
   result.meshes["centreline"] = state::Mesh::of_lines(line, edges);
   result.meshes["centreline"].point_data["radius_mm"] = state::Array::of(radius);
 
-  result.restart["levelset/lumen"] = array_of(lumen.distance);
-  const Vec3& origin = lumen.distance.origin;
-  result.restart["levelset/origin_mm"] =
-      state::Array::of(std::vector<double>{origin.x(), origin.y(), origin.z()});
-  result.restart["levelset/spacing_mm"] = state::Array::scalar(lumen.distance.spacing);
+  bodies::put_level_set(result, "lumen", lumen.distance);
   if (lumen.calcium) {
-    result.restart["levelset/calcium"] = array_of(*lumen.calcium);
+    bodies::put_level_set(result, "calcium", *lumen.calcium);
     const geometry::TriMesh calcium = geometry::zero_surface(*lumen.calcium);
     result.meshes["calcium"] = state::Mesh::of_triangles(calcium.points, calcium.triangles);
   }

@@ -31,6 +31,16 @@ std::vector<std::array<int, n>> cells_of(const Mesh& mesh, Cell type, const std:
   return cells;
 }
 
+const Array& data_of(const std::map<std::string, Array>& from, const std::string& mesh,
+                     const std::string& name, const State& file) {
+  const auto found = from.find(name);
+  if (found == from.end())
+    throw InputError(
+        "{}: the mesh '{}' has no data '{}'; expected what docs/architecture.md lists: rerun the stage '{}'",
+        file.source, mesh, name, file.stage);
+  return found->second;
+}
+
 }  // namespace
 
 Mesh Mesh::of_triangles(const Points& points, const std::vector<Triangle>& triangles) {
@@ -64,6 +74,14 @@ const Array& State::array(const std::string& name) const {
   if (found == restart.end())
     throw InputError("{}: the state of stage '{}' has no entry '{}'; rerun that stage", source, stage, name);
   return found->second;
+}
+
+const Array& State::point_data(const std::string& of, const std::string& name) const {
+  return data_of(mesh(of).point_data, of, name, *this);
+}
+
+const Array& State::cell_data(const std::string& of, const std::string& name) const {
+  return data_of(mesh(of).cell_data, of, name, *this);
 }
 
 }  // namespace valsalva::state

@@ -83,6 +83,8 @@ struct State {
   /// InputError that names the missing entry, the file (if read) and the stage that writes it.
   const Mesh& mesh(const std::string& name) const;
   const Array& array(const std::string& name) const;
+  const Array& point_data(const std::string& mesh, const std::string& name) const;
+  const Array& cell_data(const std::string& mesh, const std::string& name) const;
   bool has_mesh(const std::string& name) const { return meshes.count(name) > 0; }
   bool has_array(const std::string& name) const { return restart.count(name) > 0; }
   std::string source;  ///< the file this was read from

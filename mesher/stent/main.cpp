@@ -6,6 +6,8 @@
 //   valsalva-stent CASE.toml --set device.frame=graph --set device.graph_file=my_frame.json
 #include <cmath>
 
+#include "bodies/frame.hpp"
+#include "bodies/shell.hpp"
 #include "core/errors.hpp"
 #include "core/log.hpp"
 #include "core/provenance.hpp"
@@ -24,51 +26,33 @@ bool size_comes_from_segment(const Case& scene) {
   return scene.real("device.size_mm") == 0 && scene.text("device.frame") != "graph";
 }
 
-Array vectors(const std::vector<Vec3>& values) {
-  return Array::of(values);
-}
-
-state::Mesh frame_mesh(const Frame& frame) {
-  state::Mesh mesh = state::Mesh::of_lines(frame.nodes, frame.beams);
-  mesh.point_data["reference"] = vectors(frame.nodes);
+state::Mesh state_mesh(const Frame& frame) {
+  state::Mesh mesh =
+      bodies::frame_mesh(frame.nodes, {frame.nodes, frame.beams, frame.width_mm, frame.depth_mm, {}});
   std::vector<std::int64_t> crossing(frame.nodes.size(), 0);
   std::fill_n(crossing.begin(), frame.crossings, 1);
   mesh.point_data["crossing"] = Array::of(std::move(crossing));
-  mesh.cell_data["width_mm"] = Array::of(frame.width_mm);
-  mesh.cell_data["depth_mm"] = Array::of(frame.depth_mm);
   return mesh;
 }
 
-state::Mesh shell_mesh(const Tissue& tissue, double thickness_mm) {
-  state::Mesh mesh = state::Mesh::of_triangles(tissue.points, tissue.triangles);
-  mesh.point_data["reference"] = vectors(tissue.reference);
-  mesh.point_data["thickness_mm"] = Array::of(std::vector<double>(tissue.points.size(), thickness_mm));
-  mesh.point_data["attached"] = Array::of(tissue.attached);
-  mesh.cell_data["leaflet"] = Array::of(tissue.part);
-  mesh.cell_data["fibre1"] = vectors(tissue.fibre1);
-  mesh.cell_data["fibre2"] = vectors(tissue.fibre2);
-  return mesh;
-}
-
-Array pairs(const std::vector<Edge>& ties) {
-  std::vector<std::int64_t> flat;
-  for (const auto& [tissue, frame] : ties) flat.insert(flat.end(), {tissue, frame});
-  Array array = Array::of(std::move(flat));
-  array.shape = {ties.size(), 2};
-  return array;
+state::Mesh state_mesh(const Tissue& tissue, double thickness_mm) {
+  const structure::ShellMesh shell{
+      tissue.reference, tissue.triangles, std::vector<double>(tissue.points.size(), thickness_mm),
+      tissue.fibre1,    tissue.fibre2,    {}};
+  return bodies::shell_mesh(tissue.points, shell, tissue.attached, tissue.part);
 }
 
 void put(state::State& out, const Assembly& a, double thickness_mm) {
-  out.meshes["frame"] = frame_mesh(a.frame);
+  out.meshes["frame"] = state_mesh(a.frame);
   out.restart["device/nominal_size_mm"] = Array::scalar(a.nominal_size_mm);
   out.restart["device/inflow_z_mm"] = Array::scalar(0);
   out.restart["device/outflow_z_mm"] = Array::scalar(a.measures.height_mm);
   out.restart["device/waist_radius_mm"] = Array::scalar(a.measures.waist_diameter_mm / 2);
   if (!a.crown) return;
-  out.meshes["leaflets"] = shell_mesh(a.leaflets, thickness_mm);
-  out.meshes["skirt"] = shell_mesh(a.skirt, thickness_mm);
-  out.restart["ties/leaflets"] = pairs(a.leaflets.ties);
-  out.restart["ties/skirt"] = pairs(a.skirt.ties);
+  out.meshes["leaflets"] = state_mesh(a.leaflets, thickness_mm);
+  out.meshes["skirt"] = state_mesh(a.skirt, thickness_mm);
+  out.restart["ties/leaflets"] = bodies::tie_array(a.leaflets.ties);
+  out.restart["ties/skirt"] = bodies::tie_array(a.skirt.ties);
   out.restart["device/skirt_edge_z_mm"] = Array::scalar(0);
   out.restart["device/nadir_z_mm"] = Array::scalar(a.crown->nadir_mm);
   out.restart["device/commissure_z_mm"] = Array::scalar(a.crown->commissure_mm());

@@ -4,6 +4,7 @@
 #include <functional>
 #include <numbers>
 
+#include "bodies/level_set.hpp"
 #include "core/run_folder.hpp"
 #include "geometry/grid_sdf.hpp"
 #include "render/image.hpp"
@@ -141,11 +142,7 @@ void add_level_set(State& state) {
   const auto grid = geometry::sample({-19, -19, -18}, {19, 19, 52}, 1.0, [](const Vec3& x) {
     return std::hypot(x.x(), x.y()) - lumen_radius(x.z(), std::atan2(x.y(), x.x()));
   });
-  const auto n = [&](int d) { return static_cast<std::size_t>(grid.dimensions[d]); };
-  state.restart["levelset/lumen"] = Array::of(grid.values, {n(2), n(1), n(0)});
-  state.restart["levelset/origin_mm"] =
-      Array::of(std::vector<double>{grid.origin.x(), grid.origin.y(), grid.origin.z()});
-  state.restart["levelset/spacing_mm"] = Array::scalar(grid.spacing);
+  bodies::put_level_set(state, "lumen", grid);
 }
 
 double opening_at(double t) {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "bodies/level_set.hpp"
 #include "geometry/grid_sdf.hpp"
 #include "state/state.hpp"
 
@@ -59,12 +60,7 @@ inline state::State tube(double radius, bool with_flaps) {
   const geometry::GridSdf wall =
       geometry::sample({-extent, -extent, -25}, {extent, extent, 60}, 0.5,
                        [&](const Vec3& x) { return std::hypot(x.x(), x.y()) - radius; });
-  s.restart["levelset/lumen"] = state::Array::of(wall.values, {static_cast<std::size_t>(wall.dimensions[2]),
-                                                               static_cast<std::size_t>(wall.dimensions[1]),
-                                                               static_cast<std::size_t>(wall.dimensions[0])});
-  s.restart["levelset/origin_mm"] =
-      state::Array::of(std::vector<double>{wall.origin.x(), wall.origin.y(), wall.origin.z()});
-  s.restart["levelset/spacing_mm"] = state::Array::scalar(wall.spacing);
+  bodies::put_level_set(s, "lumen", wall);
   s.restart["anatomy/annulus_diameter_mm"] = state::Array::scalar(2 * radius);
   Points ring;
   for (int i = 0; i < 12; ++i)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bodies/level_set.hpp"
 #include "geometry/grid_sdf.hpp"
 #include "simple_surfaces.hpp"
 #include "state/state.hpp"
@@ -55,13 +56,7 @@ struct SyntheticRoot {
     out.final = true;
     const auto mesh = surface();
     out.meshes["lumen"] = state::Mesh::of_triangles(mesh.points, mesh.triangles);
-    const auto grid = level_set();
-    out.restart["levelset/lumen"] = state::Array::of(
-        grid.values,
-        {std::size_t(grid.dimensions[2]), std::size_t(grid.dimensions[1]), std::size_t(grid.dimensions[0])});
-    out.restart["levelset/origin_mm"] =
-        state::Array::of(std::vector<double>{grid.origin.x(), grid.origin.y(), grid.origin.z()});
-    out.restart["levelset/spacing_mm"] = state::Array::scalar(grid.spacing);
+    bodies::put_level_set(out, "lumen", level_set());
     out.restart["anatomy/commissure_angles_rad"] =
         state::Array::of(std::vector<double>(commissures.begin(), commissures.end()));
     out.restart["anatomy/z_mm"] = state::Array::of(
