@@ -8,25 +8,12 @@
 #include "core/errors.hpp"
 #include "core/mpi.hpp"
 #include "coupling/transfer.hpp"
+#include "mpi_for_all.hpp"
 
 namespace {
 
 using namespace valsalva;
 using namespace valsalva::coupling;
-
-class MpiForAll : public testing::Environment {
- public:
-  void SetUp() override {
-    int argc = 0;
-    char** argv = nullptr;
-    session_ = std::make_unique<mpi::Session>(argc, argv);
-  }
-  void TearDown() override { session_.reset(); }
-
- private:
-  std::unique_ptr<mpi::Session> session_;
-};
-const auto* const environment = testing::AddGlobalTestEnvironment(new MpiForAll);
 
 fluid::Grid small_grid() {
   return {{13, 11, 15}, Vec3(-5.0, 1.0, -3.0), 0.8};
