@@ -140,7 +140,14 @@ void Integrator::move_nodes() {
     } else {
       const Vec3 before = now.v[a];
       now.v[a] = ((1 - damping) * before + dt / mass_[a] * forces_.force[a]) / (1 + damping);
-      energies_.damping_work += 2 * damping * mass_[a] * (0.5 * (before + now.v[a])).squaredNorm();
+      Vec3 mean = 0.5 * (before + now.v[a]);
+      if (system_.partly_held(node)) {
+        const Mat3 held = system_.held_directions(node);
+        now.v[a] += held * (before - now.v[a]);
+        mean -= held * mean;
+        energies_.support_work -= dt * forces_.force[a].dot(held * before);
+      }
+      energies_.damping_work += 2 * damping * mass_[a] * mean.squaredNorm();
     }
     const double speed = now.v[a].norm();
     if (!(speed < settings_.speed_limit_mm_per_s))
@@ -164,8 +171,14 @@ void Integrator::turn_nodes() {
       const Vec3 before = now.angular_velocity[r];
       now.angular_velocity[r] =
           ((1 - damping) * before + dt / inertia_[r] * forces_.moment[r]) / (1 + damping);
-      energies_.damping_work +=
-          2 * damping * inertia_[r] * (0.5 * (before + now.angular_velocity[r])).squaredNorm();
+      Vec3 mean = 0.5 * (before + now.angular_velocity[r]);
+      if (system_.rotation_partly_held(static_cast<int>(r))) {
+        const Mat3 held = system_.held_axes(static_cast<int>(r));
+        now.angular_velocity[r] += held * (before - now.angular_velocity[r]);
+        mean -= held * mean;
+        energies_.support_work -= dt * forces_.moment[r].dot(held * before);
+      }
+      energies_.damping_work += 2 * damping * inertia_[r] * mean.squaredNorm();
     }
     const double turn = dt * now.angular_velocity[r].norm();
     if (!(turn < 1))
@@ -179,11 +192,20 @@ void Integrator::turn_nodes() {
 
 double Integrator::kinetic_energy() const {
   double twice = 0;
-  for (std::size_t a = 0; a < mass_.size(); ++a)
-    if (!system_.held(static_cast<int>(a))) twice += mass_[a] * system_.state.v[a].squaredNorm();
-  for (std::size_t r = 0; r < inertia_.size(); ++r)
-    if (!system_.held(system_.node_of_rotation(static_cast<int>(r))))
-      twice += inertia_[r] * system_.state.angular_velocity[r].squaredNorm();
+  for (std::size_t a = 0; a < mass_.size(); ++a) {
+    const int node = static_cast<int>(a);
+    if (system_.held(node)) continue;
+    Vec3 v = system_.state.v[a];
+    if (system_.partly_held(node)) v -= system_.held_directions(node) * v;
+    twice += mass_[a] * v.squaredNorm();
+  }
+  for (std::size_t r = 0; r < inertia_.size(); ++r) {
+    const int rotation = static_cast<int>(r);
+    if (system_.held(system_.node_of_rotation(rotation))) continue;
+    Vec3 w = system_.state.angular_velocity[r];
+    if (system_.rotation_partly_held(rotation)) w -= system_.held_axes(rotation) * w;
+    twice += inertia_[r] * w.squaredNorm();
+  }
   return 0.5 * twice;
 }
 

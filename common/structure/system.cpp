@@ -58,6 +58,36 @@ Body System::add_rotational_body(const std::string& name, const Points& x, const
   return body;
 }
 
+namespace {
+
+/// Adds a direction to the space that a projector projects on.
+void widen(Mat3& projector, const Vec3& direction) {
+  const Vec3 fresh = direction.normalized() - projector * direction.normalized();
+  if (fresh.norm() > 1e-8) projector += fresh * fresh.transpose() / fresh.squaredNorm();
+}
+
+}  // namespace
+
+void System::hold_along(int node, const Vec3& direction) {
+  widen(held_directions_.try_emplace(node, Mat3::Zero()).first->second, direction);
+}
+
+void System::hold_about(int rotation, const Vec3& axis) {
+  widen(held_axes_.try_emplace(rotation, Mat3::Zero()).first->second, axis);
+}
+
+Mat3 System::held_directions(int node) const {
+  if (held(node)) return Mat3::Identity();
+  const auto found = held_directions_.find(node);
+  return found == held_directions_.end() ? Mat3::Zero() : found->second;
+}
+
+Mat3 System::held_axes(int rotation) const {
+  if (held(node_of_rotation(rotation))) return Mat3::Identity();
+  const auto found = held_axes_.find(rotation);
+  return found == held_axes_.end() ? Mat3::Zero() : found->second;
+}
+
 bool System::has_body(const std::string& name) const {
   for (const Body& body : bodies_)
     if (body.name == name) return true;

@@ -6,7 +6,9 @@
 // velocity is parallel to it, and no gyroscopic term appears (beams are thin, and their rotary inertia is
 // scaled for the step anyway).
 //
-// Held nodes keep the velocity that they were given: zero for a fixed node, other for a prescribed motion.
+// Held nodes keep the velocity that they were given: zero for a fixed node, other for a prescribed motion. A
+// node may also be held along some directions only (roller, symmetry plane), its rotation about some axes
+// only.
 // Units: mm, g, s; force uN, moment uN mm, rotary inertia g mm2.
 #pragma once
 
@@ -83,6 +85,14 @@ class System {
   void hold(int node) { held_[node] = 1; }
   void release(int node) { held_[node] = 0; }
   bool held(int node) const { return held_[node] != 0; }
+  /// Hold the motion along one more direction, or the rotation about one more axis.
+  void hold_along(int node, const Vec3& direction);
+  void hold_about(int rotation, const Vec3& axis);
+  bool partly_held(int node) const { return held_directions_.count(node) > 0; }
+  bool rotation_partly_held(int rotation) const { return held_axes_.count(rotation) > 0; }
+  /// Projectors on what is held of a velocity: identity for a held node, zero for a free one.
+  Mat3 held_directions(int node) const;
+  Mat3 held_axes(int rotation) const;
 
   double mass(int node) const { return mass_[node]; }
   double inertia(int rotation) const { return inertia_[rotation]; }
@@ -98,6 +108,7 @@ class System {
   std::vector<int> rotation_of_;
   std::vector<int> node_of_rotation_;
   std::vector<std::uint8_t> held_;
+  std::map<int, Mat3> held_directions_, held_axes_;
 };
 
 }  // namespace valsalva::structure
