@@ -1,4 +1,4 @@
-// Ogden law in the principal stretches l_i, one to six terms,
+// Ogden law in the principal stretches l_i, any number of terms (by name in law_catalogue.hpp: three),
 //   W = sum_p mu_p/alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3).
 // Small-strain shear modulus: sum_p mu_p alpha_p / 2. Sources: Ogden 1972; one term in Joda et al. 2016
 // (thickness-anisotropy), eq. 5, with modified stretches. (Other texts write 2 mu/alpha^2 or mu alpha/2:
