@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "annulus_plane.hpp"
 #include "core/errors.hpp"
 #include "geometry/level_set.hpp"
 #include "geometry/measure.hpp"

@@ -1,17 +1,14 @@
 #include "lumen.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
 
 #include "calcium.hpp"
 #include "core/errors.hpp"
 #include "core/log.hpp"
-#include "geometry/centreline.hpp"
 #include "geometry/level_set.hpp"
 #include "lumen_field.hpp"
+#include "vessel.hpp"
 
 namespace valsalva::segment {
 namespace {
@@ -19,234 +16,7 @@ namespace {
 using geometry::GridSdf;
 
 constexpr double margin_mm = 8;  // real data beyond the cuts, for the morphology
-constexpr double ends_mm = 20;   // straight continuation while distances are taken, so that no end is felt
 constexpr double kept_mm = 6;    // of which so much stays in the result, on every side
-constexpr double least_upper_cut_mm = 20;
-constexpr double most_oblique = 1.6;   // area of the upper cut over that of the normal section
-constexpr double least_compact = 1.5;  // perimeter^2 / (4 pi area); an ellipse of 27 x 20 mm has 1.05
-constexpr double outflow_mm = 8;       // so far down the outflow tract is a tube of its own
-constexpr double widest_annulus_mm = 42, widest_section_mm2 = 2400;  // beyond any patient's
-constexpr double reach_mm = 9;      // distances are right up to here, and every radius is smaller
-constexpr double below_cut_mm = 3;  // searched below the lower cut; more would reach round the mitral leaflet
-constexpr double grid_margin_mm = 14;
-constexpr double corner_mm = 1.5;  // regained at corners and edges after the parting
-constexpr double strictness_step = 0.15, most_strict = 0.6;
-constexpr double least_upright = 0.6;  // cosine between the vessel and the axis at the upper cut
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-std::string text_of(const Vec3& p) {
-  return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm LPS", p.x(), p.y(), p.z());
-}
-
-std::string threshold_words(const Statistics& found) {
-  return found.blood > 0 ? fmt::format("anatomy.lumen_threshold_HU (now {:.0f})", found.lumen_threshold)
-                         : std::string("anatomy.labels");
-}
-
-/// Of all the lumen at one height.
-double area_at(const GridSdf& distance, double z) {
-  const auto [nx, ny, nz] = distance.dimensions;
-  const int k = std::clamp(int(std::lround((z - distance.origin.z()) / distance.spacing)), 0, nz - 1);
-  double samples = 0;
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) samples += distance.at(i, j, k) < 0;
-  return samples * distance.spacing * distance.spacing;
-}
-
-/// Where the vessel can be cut by z = const, at most `wanted`.
-double upper_cut(const GridSdf& lumen, double wanted, double half_width_mm, std::string& note) {
-  geometry::CentrelineOptions options;
-  const auto line = geometry::follow(lumen, Vec3::Zero(), Vec3::UnitZ(), options);
-  double reached = 0;
-  for (const auto& p : line) {
-    if (p.arc_mm > 15 && p.tangent.z() < least_upright) {
-      note = fmt::format("the aorta leans by more than {:.0f} degrees from z = {:.0f} mm on",
-                         std::acos(least_upright) * 180 / std::numbers::pi, p.position.z());
-      break;
-    }
-    const geometry::Plane level = geometry::Plane::at(p.position, Vec3::UnitZ());
-    const geometry::Loop loop =
-        geometry::loop_at_origin(geometry::section(lumen, level, options.half_width_mm, options.lattice_mm));
-    if (loop.empty() || geometry::area(loop) > most_oblique * p.section.area_mm2) {
-      note = fmt::format("a horizontal cut is no round disc from z = {:.0f} mm on", p.position.z());
-      break;
-    }
-    double edge = 0;
-    for (const geometry::Vec2& corner : loop) {
-      const Vec3 x = level.point(corner);
-      edge = std::max(edge, std::hypot(x.x(), x.y()));
-    }
-    if (p.position.z() > 0 && edge > guard_radius(p.position.z(), half_width_mm) - 2) {
-      note = fmt::format("the aorta leaves the searched space from z = {:.0f} mm on", p.position.z());
-      break;
-    }
-    reached = std::max(reached, p.position.z());
-    if (reached >= wanted) return wanted;
-  }
-  if (note.empty()) note = fmt::format("the lumen can be followed up to z = {:.0f} mm only", reached);
-  return std::floor(reached);
-}
-
-GridSdf every_second(const GridSdf& field) {
-  GridSdf coarse;
-  coarse.origin = field.origin;
-  coarse.spacing = 2 * field.spacing;
-  for (int d = 0; d < 3; ++d) coarse.dimensions[d] = (field.dimensions[d] + 1) / 2;
-  for (int k = 0; k < field.dimensions[2]; k += 2)
-    for (int j = 0; j < field.dimensions[1]; j += 2)
-      for (int i = 0; i < field.dimensions[0]; i += 2) coarse.values.push_back(field.at(i, j, k));
-  return coarse;
-}
-
-/// The part of the grid, at full height, within `margin_mm` of the body in x and y.
-GridSdf around(const GridSdf& field, const GridSdf& body, double margin_mm) {
-  Vec3 low = Vec3::Constant(1e9), high = -low;
-  for (int k = 0; k < body.dimensions[2]; ++k)
-    for (int j = 0; j < body.dimensions[1]; ++j)
-      for (int i = 0; i < body.dimensions[0]; ++i)
-        if (body.at(i, j, k) < 0) {
-          const Vec3 x = body.origin + body.spacing * Vec3(i, j, k);
-          low = low.cwiseMin(x);
-          high = high.cwiseMax(x);
-        }
-  std::array<int, 3> first{0, 0, 0}, last{0, 0, field.dimensions[2] - 1};
-  for (int d = 0; d < 2; ++d) {
-    first[d] = std::max(0, int((low[d] - margin_mm - field.origin[d]) / field.spacing));
-    last[d] =
-        std::min(field.dimensions[d] - 1, int((high[d] + margin_mm - field.origin[d]) / field.spacing) + 1);
-  }
-  return geometry::cropped(field, first, last);
-}
-
-/// What is found of the vessel when walls are looked for at one threshold; `leak` says what is wrong with it,
-/// empty when nothing is.
-struct Attempt {
-  GridSdf distance;
-  double z_upper_mm = 0;
-  std::string cut_note, leak;
-};
-
-/// body: signed distance at the lumen threshold; strict: the same at the threshold for walls.
-Attempt attempt(const GridSdf& body, const GridSdf& strict, const Frame& frame,
-                const std::vector<Vec3>& seeds, const LumenOptions& options) {
-  const auto annulus_loop = [&](const GridSdf& of) {
-    return geometry::loop_at_origin(geometry::section(of, geometry::Plane::at(Vec3::Zero(), Vec3::UnitZ()),
-                                                      options.half_width_mm, options.spacing_mm));
-  };
-  const auto implausible = [](const geometry::Loop& loop) -> std::string {
-    if (loop.empty()) return {};
-    const double width = geometry::caliper(loop).greatest_mm, length = geometry::perimeter(loop);
-    const double compactness = length * length / (4 * std::numbers::pi * geometry::area(loop));
-    if (width > widest_annulus_mm)
-      return fmt::format("the section at the annulus plane is {:.0f} mm wide, expected {:.0f} mm at most",
-                         width, widest_annulus_mm);
-    if (compactness > least_compact)
-      return fmt::format(
-          "the section at the annulus plane has a perimeter of {:.0f} mm around {:.0f} mm2, too long for "
-          "an annulus",
-          length, geometry::area(loop));
-    return {};
-  };
-  Attempt result;
-  GridSdf& distance = result.distance;
-  distance = parted(strict, options.opening_mm, seeds);
-  Vec3 where;
-  if (touches_guard(distance, -outflow_mm, 0, options.half_width_mm, &where)) {
-    result.leak = fmt::format("the outflow tract runs into a neighbour at {}, {:.0f} mm below the annulus",
-                              text_of(frame.to_scanner(where)), -where.z());
-    return result;
-  }
-  // The edge itself is that of the lumen threshold; only now are leaflets filled: before, the closing would
-  // bridge the thin walls between neighbours.
-  distance = within(body, distance, corner_mm);
-  distance = geometry::redistanced(geometry::component_at(distance, seeds), reach_mm);
-  if (options.closing_mm > 0) distance = closed(distance, options.closing_mm);
-  const geometry::Loop loop = annulus_loop(distance);
-  result.leak = implausible(loop);
-  if (!result.leak.empty()) return result;
-  if (loop.empty()) {
-    result.cut_note = "there is no lumen at the annulus";
-    return result;
-  }
-  limit_to_channel(distance, loop, options.channel_margin_mm);
-  distance = parted(geometry::redistanced(distance, reach_mm), options.opening_mm, seeds);
-  result.z_upper_mm = upper_cut(distance, options.upper_cut_mm, options.half_width_mm, result.cut_note);
-  if (touches_guard(distance, 0, result.z_upper_mm, options.half_width_mm, &where))
-    result.leak =
-        fmt::format("the lumen reaches the side of the searched space at {}, {:.0f} mm above the annulus",
-                    text_of(frame.to_scanner(where)), where.z());
-  continue_straight(distance, -options.lower_cut_mm, result.z_upper_mm);
-  distance = geometry::redistanced(geometry::component_at(distance, {Vec3::Zero()}), reach_mm);
-  for (double z = 0; z <= result.z_upper_mm && result.leak.empty(); z += 2) {
-    const double area = area_at(distance, z);
-    if (area > widest_section_mm2)
-      result.leak =
-          fmt::format("the section {:.0f} mm above the annulus has {:.0f} mm2, expected {:.0f} mm2 at most",
-                      z, area, widest_section_mm2);
-  }
-  return result;
-}
-
-/// From the raw field on the working grid to the open-ended lumen. The field rises by one spacing from blood
-/// to the lumen's edge. seeds: points on both sides of the valve, so that leaflets that touch do not part the
-/// vessel.
-Lumen finish(GridSdf field, const Frame& frame, const std::vector<Vec3>& seeds, const LumenOptions& options,
-             const Statistics& found) {
-  std::vector<Vec3> inside{Vec3::Zero()};
-  for (const Vec3& seed : seeds) inside.push_back(frame.from_scanner(seed));
-  limit_to_guard(field, options.half_width_mm, -options.lower_cut_mm - below_cut_mm);
-  // A wall thinner than a voxel is only a little darker than the blood on both sides: walls are looked for at
-  // rising thresholds, up to the first at which the vessel comes apart from its neighbours. On a coarser grid
-  // first: it is faster, and its result says which part of the grid is needed.
-  const auto search = [&](const GridSdf& on, double& strictness) {
-    const GridSdf body = geometry::redistanced(on, reach_mm);
-    for (;; strictness += strictness_step) {
-      GridSdf strict = on;
-      for (float& value : strict.values) value += float(strictness * options.spacing_mm);
-      Attempt found_here = attempt(body, strictness > 0 ? geometry::redistanced(strict, reach_mm) : body,
-                                   frame, inside, options);
-      if (found_here.leak.empty() || strictness + strictness_step > most_strict) return found_here;
-      log::info("walls {:.0f} % of the way from edge to blood: {}", 100 * strictness, found_here.leak);
-    }
-  };
-  double strictness = 0;
-  Attempt best = search(every_second(field), strictness);
-  if (best.leak.empty() && best.z_upper_mm >= least_upper_cut_mm)
-    best = search(around(field, best.distance, grid_margin_mm), strictness);
-  if (!best.leak.empty())
-    throw InputError(
-        "segmentation leaks: {}; raise {}, move anatomy.annulus_centre_mm, turn anatomy.annulus_normal or "
-        "lower anatomy.upper_cut_mm (now {:g})",
-        best.leak, threshold_words(found), options.upper_cut_mm);
-  if (best.z_upper_mm < least_upper_cut_mm)
-    throw InputError(
-        "segmentation is empty: {}, expected {:.0f} mm of lumen above the annulus {} at least; lower {}, "
-        "or move anatomy.annulus_centre_mm",
-        best.cut_note, least_upper_cut_mm, text_of(frame.origin), threshold_words(found));
-  if (area_at(best.distance, -options.lower_cut_mm) < 0.3 * area_at(best.distance, 0))
-    throw InputError(
-        "the lumen ends above the lower cut, {:g} mm below the annulus {}; lower anatomy.lower_cut_mm",
-        options.lower_cut_mm, text_of(frame.origin));
-  Lumen lumen;
-  lumen.frame = frame;
-  lumen.statistics = found;
-  lumen.cut_note = best.cut_note;
-  lumen.wall_strictness = strictness;
-  lumen.z_lower_mm = -options.lower_cut_mm;
-  lumen.z_upper_mm = best.z_upper_mm;
-  GridSdf distance = std::move(best.distance);
-  const double before = geometry::volume_inside(distance);
-  if (options.smoothing_mm > 0) distance = geometry::smoothed(distance, options.smoothing_mm);
-  lumen.smoothing_volume_change_pct = 100 * (geometry::volume_inside(distance) / before - 1);
-  continue_straight(distance, lumen.z_lower_mm, lumen.z_upper_mm);
-  lumen.distance = geometry::redistanced(distance);
-  return lumen;
-}
 
 /// Keeps what a fluid box and a wall need around the lumen.
 void trim(Lumen& lumen) {
@@ -265,58 +35,12 @@ void trim(Lumen& lumen) {
   lumen.distance = geometry::cropped(field, low, high);
 }
 
-template <class Function>
-GridSdf working_grid(const LumenOptions& options, Function&& value) {
-  const double w = options.half_width_mm;
-  return geometry::sample(Vec3(-w, -w, -options.lower_cut_mm - ends_mm),
-                          Vec3(w, w, options.upper_cut_mm + ends_mm), options.spacing_mm, value);
-}
-
 }  // namespace
-
-Statistics statistics_of(const Image& image, const std::vector<Vec3>& seeds, const LumenOptions& options) {
-  constexpr double radius_mm = 4, step_mm = 0.8;
-  std::vector<double> values;
-  for (const Vec3& seed : seeds) {
-    if (!image.contains(seed))
-      throw InputError(
-          "anatomy.seeds_mm: the seed {} lies outside the image; give a point inside the contrast-filled "
-          "lumen (check anatomy.coordinates)",
-          text_of(seed));
-    std::vector<double> around;
-    for (double z = -radius_mm; z <= radius_mm; z += step_mm)
-      for (double y = -radius_mm; y <= radius_mm; y += step_mm)
-        for (double x = -radius_mm; x <= radius_mm; x += step_mm)
-          if (x * x + y * y + z * z <= radius_mm * radius_mm)
-            around.push_back(image.sample(seed + Vec3(x, y, z)));
-    const double here = median(around);
-    const double least = options.lumen_threshold.value_or(150);
-    if (here < least)
-      throw InputError(
-          "segmentation is empty: around the seed {} the image has {:.0f} HU, expected more than {:.0f} "
-          "(contrast-filled blood); move anatomy.seeds_mm or anatomy.annulus_centre_mm, or lower "
-          "anatomy.lumen_threshold_HU",
-          text_of(seed), here, least);
-    values.insert(values.end(), around.begin(), around.end());
-  }
-  Statistics found;
-  found.blood = median(values);
-  for (double& value : values) value = std::abs(value - found.blood);
-  found.noise = 1.4826 * median(values);
-  std::vector<double> tissue;
-  for (float value : image.values)
-    if (value > 0 && value < found.blood / 2) tissue.push_back(value);
-  found.tissue = tissue.empty() ? 0 : median(tissue);
-  found.lumen_threshold = options.lumen_threshold.value_or((found.blood + found.tissue) / 2);
-  found.calcium_threshold =
-      options.calcium_threshold.value_or(found.blood + std::max(6 * found.noise, 200.0));
-  return found;
-}
 
 Lumen lumen_of_contrast(const Image& image, const Frame& frame, const std::vector<Vec3>& seeds,
                         const LumenOptions& options) {
-  Image part =
-      cropped(image, frame.origin, 1.5 * std::max(options.half_width_mm, options.upper_cut_mm + ends_mm));
+  Image part = cropped(image, frame.origin,
+                       1.5 * std::max(options.half_width_mm, options.upper_cut_mm + vessel_ends_mm));
   const Statistics found = statistics_of(part, seeds, options);
   log::info("blood {:.0f} HU, noise {:.0f}, soft tissue {:.0f}; lumen above {:.0f}, calcium above {:.0f}",
             found.blood, found.noise, found.tissue, found.lumen_threshold, found.calcium_threshold);
@@ -330,7 +54,7 @@ Lumen lumen_of_contrast(const Image& image, const Frame& frame, const std::vecto
     value = float(options.spacing_mm * std::clamp((found.lumen_threshold - value) / contrast, -1.0, 1.0));
   const double low = -options.lower_cut_mm - margin_mm, high = options.upper_cut_mm + margin_mm;
   continue_straight(field, low, high);
-  Lumen lumen = finish(std::move(field), frame, seeds, options, found);
+  Lumen lumen = vessel_of(std::move(field), frame, seeds, options, found);
   trim(lumen);
   GridSdf brightness = lumen.distance;
   std::size_t n = 0;
@@ -346,8 +70,8 @@ Lumen lumen_of_contrast(const Image& image, const Frame& frame, const std::vecto
 
 Lumen lumen_of_labels(const Image& image, const Frame& frame, const std::vector<double>& labels,
                       const LumenOptions& options) {
-  Image part =
-      cropped(image, frame.origin, 1.5 * std::max(options.half_width_mm, options.upper_cut_mm + ends_mm));
+  Image part = cropped(image, frame.origin,
+                       1.5 * std::max(options.half_width_mm, options.upper_cut_mm + vessel_ends_mm));
   bool any = false;
   for (float& value : part.values) {
     const bool inside = std::find(labels.begin(), labels.end(), double(value)) != labels.end();
@@ -363,7 +87,7 @@ Lumen lumen_of_labels(const Image& image, const Frame& frame, const std::vector<
     return options.spacing_mm * (1 - 2 * part.sample(frame.to_scanner(x)));
   });
   continue_straight(field, -options.lower_cut_mm - margin_mm, options.upper_cut_mm + margin_mm);
-  Lumen lumen = finish(std::move(field), frame, {}, options, {});
+  Lumen lumen = vessel_of(std::move(field), frame, {}, options, {});
   trim(lumen);
   return lumen;
 }
@@ -371,74 +95,9 @@ Lumen lumen_of_labels(const Image& image, const Frame& frame, const std::vector<
 Lumen lumen_of_field(const std::function<double(const Vec3&)>& inside, const Frame& frame,
                      const LumenOptions& options) {
   GridSdf field = working_grid(options, [&](const Vec3& x) { return inside(frame.to_scanner(x)); });
-  Lumen lumen = finish(std::move(field), frame, {}, options, {});
+  Lumen lumen = vessel_of(std::move(field), frame, {}, options, {});
   trim(lumen);
   return lumen;
-}
-
-Frame interface_of(const Image& labels, double upstream, double downstream) {
-  std::vector<Vec3> touching;
-  const auto [nx, ny, nz] = labels.size;
-  for (int k = 1; k + 1 < nz; ++k)
-    for (int j = 1; j + 1 < ny; ++j)
-      for (int i = 1; i + 1 < nx; ++i) {
-        if (labels.at(i, j, k) != float(downstream)) continue;
-        for (const auto& step :
-             {std::array{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})
-          if (labels.at(i + step[0], j + step[1], k + step[2]) == float(upstream))
-            touching.push_back(labels.position(Vec3(i, j, k) + 0.5 * Vec3(step[0], step[1], step[2])));
-      }
-  if (touching.size() < 50)
-    throw InputError(
-        "anatomy.annulus_labels: labels {} and {} touch in {} voxel faces, expected 50 at least; correct "
-        "the labels or give anatomy.annulus_centre_mm and anatomy.annulus_normal",
-        upstream, downstream, touching.size());
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : touching) centre += p / double(touching.size());
-  Mat3 spread = Mat3::Zero();
-  for (const Vec3& p : touching) spread += (p - centre) * (p - centre).transpose();
-  Vec3 normal = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(0);
-  // Downstream is where the downstream label lies near the plane.
-  double side = 0;
-  for (int k = 0; k < nz; ++k)
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i) {
-        if (labels.at(i, j, k) != float(downstream)) continue;
-        const Vec3 away = labels.position(Vec3(i, j, k)) - centre;
-        if (away.norm() < 15) side += away.dot(normal);
-      }
-  return Frame::at(centre, side < 0 ? Vec3(-normal) : normal);
-}
-
-Frame annulus_from_seeds(const Image& image, const std::vector<Vec3>& seeds, const LumenOptions& options) {
-  if (seeds.size() < 2)
-    throw InputError(
-        "anatomy.seeds_mm: found {} seed, expected two at least (first upstream, last downstream of the "
-        "valve), or anatomy.annulus_centre_mm and anatomy.annulus_normal",
-        seeds.size());
-  const Vec3 along = seeds.back() - seeds.front();
-  const Frame rough = Frame::at(seeds.front(), along);
-  const Image part = cropped(image, seeds.front() + along / 2, along.norm() + 40);
-  const Statistics found = statistics_of(part, seeds, options);
-  LumenOptions coarse = options;
-  coarse.spacing_mm = 0.8;
-  coarse.lower_cut_mm = 5;
-  coarse.upper_cut_mm = along.norm();
-  GridSdf field = working_grid(coarse, [&](const Vec3& x) {
-    return (found.lumen_threshold - part.sample(rough.to_scanner(x))) / found.lumen_threshold;
-  });
-  const GridSdf lumen = parted(geometry::redistanced(field, reach_mm), options.opening_mm,
-                               {Vec3::Zero(), rough.from_scanner(seeds.back())});
-  const auto line = geometry::follow(lumen, Vec3::Zero(), Vec3::UnitZ(), {});
-  if (line.size() < 15)
-    throw InputError(
-        "segmentation is empty: from the upstream seed the lumen can be followed for {} mm only; move "
-        "anatomy.seeds_mm or lower anatomy.lumen_threshold_HU (now {:.0f})",
-        line.size(), found.lumen_threshold);
-  const auto smaller = [](const auto& a, const auto& b) { return a.section.area_mm2 < b.section.area_mm2; };
-  const auto widest = std::max_element(line.begin() + 10, line.end(), smaller);
-  const auto narrowest = std::min_element(line.begin(), widest, smaller);
-  return Frame::at(rough.to_scanner(narrowest->position), rough.axes * narrowest->tangent);
 }
 
 }  // namespace valsalva::segment

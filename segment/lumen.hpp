@@ -65,12 +65,4 @@ Lumen lumen_of_labels(const Image& image, const Frame& frame, const std::vector<
 Lumen lumen_of_field(const std::function<double(const Vec3&)>& inside, const Frame& frame,
                      const LumenOptions& options);
 
-/// The plane between two labels: centroid and normal (from upstream to downstream) of the voxels of
-/// `downstream` that touch `upstream`. InputError when they do not touch.
-Frame interface_of(const Image& labels, double upstream, double downstream);
-
-/// Annulus plane from seeds alone: the narrowest section between the upstream seed and the widest section
-/// (the sinuses) on the way to the downstream seed.
-Frame annulus_from_seeds(const Image& image, const std::vector<Vec3>& seeds, const LumenOptions& options);
-
 }  // namespace valsalva::segment

@@ -1,6 +1,7 @@
 // The segmentation of the synthetic CT against the numbers that made it. The segmentation reads the image
 // only.
 #include "anatomy.hpp"
+#include "annulus_plane.hpp"
 #include "geometry/level_set.hpp"
 #include "geometry/surface.hpp"
 #include "phantom/from_case.hpp"
