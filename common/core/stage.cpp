@@ -74,6 +74,25 @@ void run_and_summarise(const Stage& stage, StageContext& context) {
   write("ok");
 }
 
+/// The folders on the way to a result that are not there yet. They are made before the stage starts, which
+/// proves that results can be written, and taken away again when the input turns out to be bad.
+class MissingFolders {
+ public:
+  explicit MissingFolders(const fs::path& folder) {
+    std::error_code unreadable;
+    for (fs::path p = fs::absolute(folder); !fs::exists(p, unreadable) && p.has_relative_path();
+         p = p.parent_path())
+      missing_.push_back(p);
+  }
+  void remove_empty() const {
+    std::error_code not_empty;
+    for (const fs::path& p : missing_) fs::remove(p, not_empty);
+  }
+
+ private:
+  std::vector<fs::path> missing_;  // innermost first
+};
+
 void run_stage(const Stage& stage, const Schema& schema, const CommandLine& line, MPI_Comm comm) {
   const bool first = mpi::rank(comm) == 0;
   log::configure(line.quiet, first);
@@ -100,12 +119,21 @@ void run_stage(const Stage& stage, const Schema& schema, const CommandLine& line
     return;
   }
   const fs::path folder = line.out.value_or(fs::path("runs") / scene.name() / stage.name);
+  // The barriers: no rank makes a folder before the first has looked, none after the first has tidied up.
+  const MissingFolders missing(folder);
+  MPI_Barrier(comm);
   RunFolder run(folder);
+  MPI_Barrier(comm);
   if (!line.resume) run.disregard_present_states();
   StageContext context{scene,      std::move(run), new_summary(stage, scene, comm),
                        line.from,  line.resume,    line.steps,
                        line.quiet, comm,           first && !line.quiet};
-  run_and_summarise(stage, context);
+  try {
+    run_and_summarise(stage, context);
+  } catch (const InputError&) {
+    if (first) missing.remove_empty();
+    throw;
+  }
 }
 
 /// What went wrong on this rank, as a code; printed once.

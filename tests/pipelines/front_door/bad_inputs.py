@@ -61,6 +61,8 @@ STATES = [
     ("parent with NaN", "crimp", "[device]\nsize_mm = 26\n", ["--from", "{stent_state_with_nan}"], INPUT, ["not finite"]),
     ("nothing to resume", "crimp", "[device]\nsize_mm = 26\n", ["--resume", "--from", "{stent_state}"], INPUT, ["--resume"]),
     ("mesher without segment", "mesher", "[anatomy]\n", [], INPUT, ["no state of stage 'segment'"]),
+    ("deploy without crimp", "deploy", "[device]\nsize_mm = 26\n", [], INPUT, ["no state of stage 'crimp'", "make crimp"]),
+    ("cycle without deploy, elsewhere", "cycle", "[device]\nsize_mm = 26\n", ["--out", "results/here/cycle"], INPUT, ["no state of stage 'deploy'", "make deploy"]),
 ]
 IMAGES = [
     ("image that does not exist", "segment", "[anatomy]\nimage = \"nowhere.nrrd\"\nannulus_centre_mm = [8, 8, 8]\nannulus_normal = [0, 0, 1]\n", [], INPUT, ["nowhere.nrrd"]),
@@ -87,8 +89,9 @@ FILE_SYSTEM = [
 TABLE = COMMAND_LINE + CASE_FILE + STATES + IMAGES + DEVICE + FILE_SYSTEM
 
 
-def files_below(folder):
-    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
+def paths_below(folder):
+    """Files and folders: a refused run leaves not even an empty folder behind."""
+    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*"))
 
 
 def small_files_only():
@@ -120,9 +123,9 @@ def check_row(row, inputs):
         if text is not None:
             (folder / "case.toml").write_text(text.format(**inputs))
             command.append("case.toml")
-        before = files_below(folder)
+        before = paths_below(folder)
         good = verdict(name, start(command + [a.format(**inputs) for a in arguments], folder), code, words)
-        left = [f for f in files_below(folder) if f not in before]
+        left = [f for f in paths_below(folder) if f not in before]
         if left:
             print(f"FAILED  {name}: it left {', '.join(left)}")
         return good and not left
@@ -135,7 +138,7 @@ def check_full_disk():
         (folder / "case.toml").write_text("[device]\nsize_mm = 26\n")
         done = start([str(BIN / "valsalva-stent"), "case.toml"], folder, small_files_only)
         good = verdict("full disk", done, ENVIRONMENT, ["write failed", "--resume"])
-        left = [f for f in files_below(folder) if f.endswith((".h5", ".part"))]
+        left = [f for f in paths_below(folder) if f.endswith((".h5", ".part"))]
         if left:
             print(f"FAILED  full disk: it left {', '.join(left)}")
         return good and not left
