@@ -21,19 +21,22 @@ ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> she
       settings_(settings),
       transfer_(flow.slab(), settings.kernel),
       power_(shell_ ? shell_->x().size() : 0),
+      last_velocity_(shell_ ? shell_->x().size() : 0, Vec3::Zero()),
+      change_(last_velocity_),
       scratch_(flow.slab()) {}
 
 void ImmersedFlow::probe() {
   shell_->update_tangent();
   const double per_density = 1 / flow_.parameters().density;
-  power_.run([&](const Points& y, Points& f) { shell_->tangent_product(y, f); },
-             [&](const Points& f, Points& v) {
-               scratch_.fill(0);
-               transfer_.spread(f, scratch_);
-               transfer_.interpolate(scratch_, v);
-               for (Vec3& each : v) each *= per_density;
-             },
-             steps_ == 0 ? settings_.first_iterations : settings_.probe_iterations);
+  const Operator stiffness = [&](const Points& y, Points& f) { shell_->tangent_product(y, f); };
+  const Operator mobility = [&](const Points& f, Points& v) {
+    scratch_.fill(0);
+    transfer_.spread(f, scratch_);
+    transfer_.interpolate(scratch_, v);
+    for (Vec3& each : v) each *= per_density;
+  };
+  power_.run(stiffness, mobility, steps_ == 0 ? settings_.first_iterations : settings_.probe_iterations);
+  if (steps_ > 0) power_.look_along(change_, stiffness, mobility);
 }
 
 double ImmersedFlow::plan(double at_most) {
@@ -76,6 +79,8 @@ ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double 
   done.critical_s = shell_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
   if (shell_) {
     transfer_.interpolate(flow_.velocity(), velocity_);
+    for (std::size_t a = 0; a < velocity_.size(); ++a) change_[a] = velocity_[a] - last_velocity_[a];
+    last_velocity_ = velocity_;
     shell_->move(velocity_, done.dt_s);
   }
   max_speed_ = done.fluid.max_speed;
@@ -89,6 +94,8 @@ std::map<std::string, state::Array> ImmersedFlow::save() const {
   if (shell_) {
     arrays["coupling/points"] = state::Array::of(shell_->x());
     arrays["coupling/direction"] = state::Array::of(power_.direction());
+    arrays["coupling/velocity"] = state::Array::of(last_velocity_);
+    arrays["coupling/change"] = state::Array::of(change_);
   }
   arrays["coupling/history"] = state::Array::of(
       std::vector<double>{static_cast<double>(steps_), last_dt_, max_speed_, caution_, power_.eigenvalue()});
@@ -107,9 +114,12 @@ void ImmersedFlow::load(const state::State& state) {
   if (!shell_) return;
   Points x = state.array("coupling/points").points("coupling/points");
   Points direction = state.array("coupling/direction").points("coupling/direction");
-  if (x.size() != shell_->x().size() || direction.size() != x.size())
-    throw InputError("{}: coupling/points has {} nodes, the leaflets have {}", state.source, x.size(),
-                     shell_->x().size());
+  last_velocity_ = state.array("coupling/velocity").points("coupling/velocity");
+  change_ = state.array("coupling/change").points("coupling/change");
+  for (const Points* each : {&x, &direction, &last_velocity_, &change_})
+    if (each->size() != shell_->x().size())
+      throw InputError("{}: coupling/... has {} nodes, the leaflets have {}", state.source, each->size(),
+                       shell_->x().size());
   shell_->set_x(std::move(x));
   power_.restore(std::move(direction), history[4]);
 }

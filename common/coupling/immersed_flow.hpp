@@ -68,6 +68,7 @@ class ImmersedFlow {
   ImmersedFlowSettings settings_;
   Transfer transfer_;
   PowerIteration power_;
+  Points last_velocity_, change_;  // of the nodes in the last step; its difference to the step before
   fluid::FaceField scratch_;
   Points force_, velocity_;
   long steps_ = 0;

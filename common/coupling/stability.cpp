@@ -28,14 +28,36 @@ PowerIteration::PowerIteration(std::size_t nodes) : direction_(nodes), force_(no
     }
 }
 
+std::optional<double> PowerIteration::quotient(const Points& direction, const Operator& stiffness,
+                                               const Operator& mobility) {
+  stiffness(direction, force_);
+  mobility(force_, next_);
+  const double energy = dot(direction, force_);
+  if (!(energy > 0) || !(dot(next_, next_) > 0)) return std::nullopt;
+  return dot(force_, next_) / energy;
+}
+
+void PowerIteration::take_next() {
+  const double size = std::sqrt(dot(next_, next_));
+  for (std::size_t a = 0; a < direction_.size(); ++a) direction_[a] = next_[a] / size;
+}
+
 double PowerIteration::run(const Operator& stiffness, const Operator& mobility, int iterations) {
   for (int i = 0; i < iterations && !direction_.empty(); ++i) {
-    stiffness(direction_, force_);
-    mobility(force_, next_);
-    const double energy = dot(direction_, force_), size = std::sqrt(dot(next_, next_));
-    if (!(energy > 0) || !(size > 0)) return eigenvalue_ = 0;
-    eigenvalue_ = dot(force_, next_) / energy;
-    for (std::size_t a = 0; a < direction_.size(); ++a) direction_[a] = next_[a] / size;
+    const std::optional<double> found = quotient(direction_, stiffness, mobility);
+    if (!found) return eigenvalue_ = 0;
+    eigenvalue_ = *found;
+    take_next();
+  }
+  return eigenvalue_;
+}
+
+double PowerIteration::look_along(const Points& direction, const Operator& stiffness,
+                                  const Operator& mobility) {
+  const std::optional<double> found = quotient(direction, stiffness, mobility);
+  if (found && *found > eigenvalue_) {
+    eigenvalue_ = *found;
+    take_next();
   }
   return eigenvalue_;
 }

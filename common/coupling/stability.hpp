@@ -7,9 +7,15 @@
 // which is on the safe side. lambda comes from a warm-started power iteration with the Rayleigh quotient of
 // the K-product,   lambda = (K y)^T (1/rho) J S (K y) / (y^T K y), a bound from below whose error is second
 // order in that of the direction. With 0.85-0.9 of dt_crit every run of the prototypes held (docs/decisions).
+//
+// A warm start follows one mode. Where another, local one stiffens past it (a fold that is pulled straight
+// beside the attachment), a few iterations do not find it, but the motion does: an explicit step beyond its
+// limit makes that mode alternate from step to step. So the quotient is also taken along the last change of
+// the nodes' velocities, and the larger of the two counts.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/types.hpp"
@@ -26,6 +32,8 @@ class PowerIteration {
   /// Some iterations on mobility * stiffness; returns the eigenvalue's estimate (1/s2), 0 for a zero
   /// stiffness.
   double run(const Operator& stiffness, const Operator& mobility, int iterations);
+  /// One product along another direction, which takes the place of the present one if its quotient is larger.
+  double look_along(const Points& direction, const Operator& stiffness, const Operator& mobility);
   double eigenvalue() const { return eigenvalue_; }
   /// 2 / sqrt(lambda); infinite for lambda = 0.
   double critical_step() const;
@@ -34,6 +42,11 @@ class PowerIteration {
   void restore(Points direction, double eigenvalue);
 
  private:
+  /// Rayleigh quotient along `direction`; next_ is the product. Nothing for a direction without stiffness.
+  std::optional<double> quotient(const Points& direction, const Operator& stiffness,
+                                 const Operator& mobility);
+  void take_next();
+
   Points direction_, force_, next_;
   double eigenvalue_ = 0;
 };

@@ -54,6 +54,22 @@ TEST(PowerIteration, ARestartContinuesBitwise) {
   EXPECT_EQ(one.run(chain, same, 3), two.run(chain, same, 3));
 }
 
+// Two springs that know nothing of each other: a warm start on the one does not see the other stiffen.
+TEST(PowerIteration, FindsANewModeAlongTheMotion) {
+  double second = 1;
+  const Operator springs = [&](const Points& y, Points& f) { f = {10 * y[0], second * y[1]}; };
+  const Operator same = [](const Points& f, Points& v) { v = f; };
+  PowerIteration power(2);
+  power.run(springs, same, 60);
+  EXPECT_NEAR(power.eigenvalue(), 10, 1e-9);
+  second = 15;
+  EXPECT_NEAR(power.run(springs, same, 2), 10, 1e-9);
+  const Points motion{Vec3::Zero(), Vec3(1e-3, 0, 0)};
+  EXPECT_NEAR(power.look_along(motion, springs, same), 15, 1e-9);
+  EXPECT_NEAR(power.run(springs, same, 2), 15, 1e-9);
+  EXPECT_NEAR(power.look_along({Vec3(1, 0, 0), Vec3::Zero()}, springs, same), 15, 1e-9);
+}
+
 TEST(PowerIteration, NoStiffnessNoLimit) {
   PowerIteration power(3);
   power.run(
