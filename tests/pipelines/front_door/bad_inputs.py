@@ -61,8 +61,7 @@ STATES = [
     ("parent with NaN", "crimp", "[device]\nsize_mm = 26\n", ["--from", "{stent_state_with_nan}"], INPUT, ["not finite"]),
     ("nothing to resume", "crimp", "[device]\nsize_mm = 26\n", ["--resume", "--from", "{stent_state}"], INPUT, ["--resume"]),
     ("mesher without segment", "mesher", "[anatomy]\n", [], INPUT, ["no state of stage 'segment'"]),
-    ("deploy without crimp", "deploy", "[device]\nsize_mm = 26\n", [], INPUT, ["no state of stage 'crimp'", "make crimp"]),
-    ("cycle without deploy, elsewhere", "cycle", "[device]\nsize_mm = 26\n", ["--out", "results/here/cycle"], INPUT, ["no state of stage 'deploy'", "make deploy"]),
+    ("parent that was never run, result elsewhere", "crimp", "[device]\nsize_mm = 26\n", ["--out", "results/here/crimp"], INPUT, ["no state of stage 'stent'", "make stent"]),
 ]
 IMAGES = [
     ("image that does not exist", "segment", "[anatomy]\nimage = \"nowhere.nrrd\"\nannulus_centre_mm = [8, 8, 8]\nannulus_normal = [0, 0, 1]\n", [], INPUT, ["nowhere.nrrd"]),
