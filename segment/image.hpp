@@ -25,9 +25,11 @@ struct Image {
   float at(int i, int j, int k) const { return values[(std::size_t(k) * size[1] + j) * size[0] + i]; }
 };
 
-/// NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd), or a folder with one DICOM series (of
-/// several, the one with the most slices). InputError: missing or cut-short file, unknown format, not three
-/// dimensions, a spacing that is not positive, a direction that is singular, values that are not finite.
+/// NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd), or a folder with a DICOM series: of
+/// several, the one with the most slices (the log names them all); slices are ordered by their positions,
+/// whatever their names; other files are passed over. InputError: missing or cut-short file, unknown format,
+/// not three dimensions, a spacing that is not positive, a direction that is singular, values that are not
+/// finite; slices of several sizes or directions, two in one place, or in uneven steps (0.05 mm).
 Image read_image(const std::filesystem::path& path);
 
 /// By the ending, as above; 16-bit integers, compressed. EnvironmentError when it cannot be written.

@@ -11,10 +11,12 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
 #include "core/errors.hpp"
+#include "core/log.hpp"
 #include "image.hpp"
 
 namespace valsalva::segment {
@@ -22,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Volume = itk::Image<float, 3>;
+
+constexpr double most_uneven_mm = 0.05;  // between the slices of a series; positions are rounded on export
 
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -111,19 +115,88 @@ Volume::Pointer read_file(const fs::path& path) {
   return reader->GetOutput();
 }
 
+/// What the header of one DICOM slice says.
+struct Slice {
+  std::string file;
+  std::array<itk::SizeValueType, 2> size;
+  Vec3 position, normal;  // LPS, mm
+};
+
+Slice slice_of(const std::string& file) {
+  const auto header = itk::GDCMImageIO::New();
+  header->SetFileName(file);
+  header->ReadImageInformation();
+  Slice slice{file, {header->GetDimensions(0), header->GetDimensions(1)}, {}, {}};
+  const auto along = [&](unsigned axis) {
+    const std::vector<double> d = header->GetDirection(axis);
+    return Vec3(d[0], d[1], d[2]);
+  };
+  for (unsigned d = 0; d < 3; ++d) slice.position[d] = header->GetOrigin(d);
+  slice.normal = along(0).cross(along(1)).normalized();
+  return slice;
+}
+
+/// Slices of one size and direction, in equal steps: what is one volume.
+void check_stack(const fs::path& folder, const std::vector<Slice>& slices) {
+  const Slice& first = slices.front();
+  std::vector<double> steps;
+  for (std::size_t n = 0; n < slices.size(); ++n) {
+    const Slice& here = slices[n];
+    if (here.size != first.size)
+      throw InputError(
+          "{}: slices of {} x {} and of {} x {} pixels ({}) in one series; keep those of one size",
+          folder.string(), first.size[0], first.size[1], here.size[0], here.size[1], here.file);
+    if (here.normal.dot(first.normal) < 1 - 1e-4)
+      throw InputError("{}: {} is turned against the other slices of its series; remove scout images",
+                       folder.string(), here.file);
+    if (n > 0) steps.push_back((here.position - slices[n - 1].position).dot(first.normal));
+  }
+  std::vector<double> sorted = steps;
+  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    if (std::abs(steps[n]) < most_uneven_mm)
+      throw InputError("{}: {} and {} lie in one place; the series holds several phases, keep one",
+                       folder.string(), slices[n].file, slices[n + 1].file);
+    if (std::abs(steps[n] - usual) > most_uneven_mm)
+      throw InputError(
+          "{}: {:.3f} mm between the slices {} and {}, expected {:.3f} mm as between the others; a slice is "
+          "missing, export the series again",
+          folder.string(), steps[n], slices[n].file, slices[n + 1].file, usual);
+  }
+}
+
 Volume::Pointer read_series(const fs::path& folder) {
   const auto names = itk::GDCMSeriesFileNames::New();
+  names->SetUseSeriesDetails(false);  // a series is what has one series number, so that odd slices are seen
   names->SetDirectory(folder.string());
   std::vector<std::string> longest;
+  std::string chosen, counts;
   for (const std::string& series : names->GetSeriesUIDs()) {
     const auto& files = names->GetFileNames(series);
-    if (files.size() > longest.size()) longest.assign(files.begin(), files.end());
+    counts += fmt::format("{}{} ({} slices)", counts.empty() ? "" : ", ", series, files.size());
+    if (files.size() <= longest.size()) continue;
+    longest.assign(files.begin(), files.end());
+    chosen = series;
   }
   if (longest.size() < 2)
-    throw InputError("{}: the folder holds no DICOM series of two or more slices", folder.string());
+    throw InputError("{}: the folder holds no DICOM series of two or more slices{}", folder.string(),
+                     counts.empty() ? "" : "; found " + counts);
+  if (names->GetSeriesUIDs().size() > 1)
+    log::warn("{}: several DICOM series, {}; {} is taken, the one with the most slices", folder.string(),
+              counts, chosen);
+  std::vector<Slice> slices;
+  for (const std::string& file : longest) slices.push_back(slice_of(file));
+  const Vec3 normal = slices.front().normal;
+  std::stable_sort(slices.begin(), slices.end(), [&](const Slice& a, const Slice& b) {
+    return a.position.dot(normal) < b.position.dot(normal);
+  });
+  check_stack(folder, slices);
+  for (std::size_t n = 0; n < slices.size(); ++n) longest[n] = slices[n].file;
   const auto reader = itk::ImageSeriesReader<Volume>::New();
   reader->SetImageIO(itk::GDCMImageIO::New());
   reader->SetFileNames(longest);
+  reader->ForceOrthogonalDirectionOff();  // a tilted gantry shears the volume
   reader->Update();
   return reader->GetOutput();
 }
