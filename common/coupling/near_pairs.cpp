@@ -7,6 +7,12 @@
 
 namespace valsalva::coupling {
 
+namespace {
+
+constexpr double skin_share = 0.5;  // of the range
+
+}  // namespace
+
 NearPairs::NearPairs(double range_mm, Points rest, Points start, std::vector<int> group)
     : range_(range_mm), rest_(std::move(rest)), start_(std::move(start)), group_(std::move(group)) {
   VALSALVA_ASSERT(rest_.size() == group_.size() && start_.size() == group_.size());
@@ -16,19 +22,36 @@ NearPairs::NearPairs(double range_mm, Points rest, Points start, std::vector<int
 
 const std::vector<NearPair>& NearPairs::find(const Points& x) {
   VALSALVA_ASSERT(x.size() == group_.size());
+  double moved = listed_at_.empty() ? 1e300 : 0;
+  for (std::size_t a = 0; a < listed_at_.size(); ++a)
+    if (group_[a] >= 0) moved = std::max(moved, (x[a] - listed_at_[a]).squaredNorm());
+  if (moved >= 0.25 * skin_share * skin_share * range_ * range_) list(x);
   pairs_.clear();
+  for (NearPair pair : listed_) {
+    const double square = (x[pair.a] - x[pair.b]).squaredNorm();
+    if (square >= range_ * range_ || square == 0) continue;
+    pair.distance_mm = std::sqrt(square);
+    pairs_.push_back(pair);
+  }
+  return pairs_;
+}
+
+void NearPairs::list(const Points& x) {
+  const double reach = (1 + skin_share) * range_;
+  listed_at_ = x;
+  listed_.clear();
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   for (std::size_t a = 0; a < x.size(); ++a) {
     if (group_[a] < 0) continue;
     low = low.cwiseMin(x[a]);
     high = high.cwiseMax(x[a]);
   }
-  if (!(low.x() <= high.x())) return pairs_;
+  if (!(low.x() <= high.x())) return;
   std::array<int, 3> cells;
-  for (int d = 0; d < 3; ++d) cells[d] = static_cast<int>((high[d] - low[d]) / range_) + 1;
+  for (int d = 0; d < 3; ++d) cells[d] = static_cast<int>((high[d] - low[d]) / reach) + 1;
   const auto cell_of = [&](const Vec3& p) {
     std::array<int, 3> c;
-    for (int d = 0; d < 3; ++d) c[d] = std::min(cells[d] - 1, static_cast<int>((p[d] - low[d]) / range_));
+    for (int d = 0; d < 3; ++d) c[d] = std::min(cells[d] - 1, static_cast<int>((p[d] - low[d]) / reach));
     return c;
   };
   const auto flat = [&](int i, int j, int k) {
@@ -59,14 +82,14 @@ const std::vector<NearPair>& NearPairs::find(const Points& x) {
         for (int n = begin; n < end; ++n) {
           const int b = order_[n];
           if (b <= a || group_[b] == group_[a]) continue;
-          const double square = (x[a] - x[b]).squaredNorm();
-          if (square >= range_ * range_ || square == 0) continue;
-          pairs_.push_back(
-              {a, b, std::sqrt(square), (rest_[a] - rest_[b]).norm(), (start_[a] - start_[b]).norm()});
+          if ((x[a] - x[b]).squaredNorm() >= reach * reach) continue;
+          listed_.push_back({a, b, 0, (rest_[a] - rest_[b]).norm(), (start_[a] - start_[b]).norm()});
         }
       }
   }
-  return pairs_;
+  std::sort(listed_.begin(), listed_.end(), [](const NearPair& one, const NearPair& other) {
+    return one.a != other.a ? one.a < other.a : one.b < other.b;
+  });
 }
 
 }  // namespace valsalva::coupling

@@ -1,4 +1,5 @@
-// Nodes of different leaflets that are near each other, by a cell list.
+// Nodes of different leaflets that are near each other: a list with a skin of half the range, made by cells,
+// and made anew once a node has moved by half the skin. What is found does not depend on the list's age.
 #pragma once
 
 #include <vector>
@@ -20,7 +21,7 @@ class NearPairs {
   /// the range is not positive.
   NearPairs(double range_mm, Points rest, Points start, std::vector<int> group);
 
-  /// All pairs nearer than the range at x, sorted by a. Valid until the next call.
+  /// All pairs nearer than the range at x, sorted by a and b. Valid until the next call.
   const std::vector<NearPair>& find(const Points& x);
   double range_mm() const { return range_; }
 
@@ -28,8 +29,11 @@ class NearPairs {
   double range_;
   Points rest_, start_;
   std::vector<int> group_;
+  void list(const Points& x);
+
   std::vector<int> order_, first_;  // nodes sorted by cell
-  std::vector<NearPair> pairs_;
+  std::vector<NearPair> listed_, pairs_;
+  Points listed_at_;
 };
 
 }  // namespace valsalva::coupling

@@ -164,6 +164,26 @@ TEST(Repulsion, SheetsPushWithThePressureOfTheHeaderOnAnyMesh) {
   }
 }
 
+TEST(NearPairs, DoNotDependOnTheAgeOfTheList) {
+  Cloud c = cloud();
+  NearPairs aged(0.5, c.start, c.start, c.group);
+  aged.find(c.x);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0, 0.02);
+  for (int step = 0; step < 12; ++step) {
+    for (Vec3& x : c.x) x += Vec3(normal(random), normal(random), normal(random));
+    NearPairs fresh(0.5, c.start, c.start, c.group);
+    const auto& one = aged.find(c.x);
+    const auto& other = fresh.find(c.x);
+    ASSERT_EQ(one.size(), other.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(one[i].a, other[i].a);
+      EXPECT_EQ(one[i].b, other[i].b);
+      EXPECT_EQ(one[i].distance_mm, other[i].distance_mm);
+    }
+  }
+}
+
 TEST(Standoff, SheetsCoupleAsFarApartAsItSays) {
   Points x;
   std::vector<int> group;
