@@ -35,10 +35,10 @@ struct Fibres {
 enum class Derivatives { stress, tangent };
 
 struct ElasticResponse {
-  double energy = 0;                    ///< W, Pa
-  Mat3 stress = Mat3::Zero();           ///< S, Pa
   Tangent6 tangent = Tangent6::Zero();  ///< dS/dE, Pa; zero when not asked for
-  double exponent = 0;
+  double energy = 0;                    ///< W, Pa
+  double exponent = 0;                  ///< the largest argument of an exponential
+  Mat3 stress = Mat3::Zero();           ///< S, Pa
 };
 
 class ElasticLaw : public PlaneLaw {

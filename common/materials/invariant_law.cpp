@@ -38,7 +38,7 @@ bool uses_i2(const InvariantResponse& w) {
 
 PlaneStress stress_of(const PlaneInvariants& v, const InvariantResponse& w,
                       const Eigen::Matrix2d& i1_gradient, const PlaneFibres& fibres) {
-  PlaneStress s{w.energy, 2 * w.d1 * i1_gradient, w.exponent, v.c33.value};
+  PlaneStress s{w.energy, w.exponent, v.c33.value, 2 * w.d1 * i1_gradient};
   if (uses_i2(w)) s.stress += 2 * w.d2 * i2_gradient(v);
   for (int i = 0; i < fibres.count; ++i)
     s.stress += 2 * w.d4[i] * fibres.direction[i] * fibres.direction[i].transpose();

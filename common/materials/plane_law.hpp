@@ -17,9 +17,9 @@ struct PlaneFibres {
 
 struct PlaneStress {
   double energy = 0;       ///< W per reference volume, Pa
-  Eigen::Matrix2d stress;  ///< second Piola-Kirchhoff, Pa
   double exponent = 0;     ///< the largest argument of an exponential
   double c33 = 1;          ///< square of the thickness stretch
+  Eigen::Matrix2d stress;  ///< second Piola-Kirchhoff, Pa
 };
 
 struct PlaneTangent {

@@ -23,9 +23,8 @@ Sheet sheet_of(const ElasticLaw& law, const Eigen::Matrix2d& c, const PlaneFibre
 }
 
 PlaneStress stress_of(const Sheet& s) {
-  return {s.space.energy,
-          s.space.stress.topLeftCorner<2, 2>() + s.space.stress(2, 2) * s.c33.first * s.cofactor,
-          s.space.exponent, s.c33.value};
+  return {s.space.energy, s.space.exponent, s.c33.value,
+          s.space.stress.topLeftCorner<2, 2>() + s.space.stress(2, 2) * s.c33.first * s.cofactor};
 }
 
 }  // namespace

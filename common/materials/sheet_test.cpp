@@ -20,9 +20,8 @@ SheetState evaluate(const PlaneLaw& law, const PlaneFibres& fibres, double stret
   const PlaneStress s = law.plane_stress(f.transpose() * f, fibres, factor);
   const double stretch3 = std::sqrt(s.c33);
   const Eigen::Matrix2d nominal = f * s.stress;
-  return {stretch1,      stretch2,      stretch3,
-          nominal(0, 0), nominal(1, 1), nominal * f.transpose() / (f.determinant() * stretch3),
-          s.energy,      s.exponent};
+  return {stretch1,      stretch2, stretch3,   nominal(0, 0),
+          nominal(1, 1), s.energy, s.exponent, nominal * f.transpose() / (f.determinant() * stretch3)};
 }
 
 void require_stretch(const std::optional<double>& stretch, const char* name) {

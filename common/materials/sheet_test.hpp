@@ -19,9 +19,9 @@ struct SheetLoad {
 struct SheetState {
   double stretch1 = 1, stretch2 = 1, stretch3 = 1;
   double nominal1_Pa = 0, nominal2_Pa = 0;  ///< force per reference area (P11, P22)
-  Eigen::Matrix2d cauchy_Pa;
   double energy_Pa = 0;
   double exponent = 0;
+  Eigen::Matrix2d cauchy_Pa;
 };
 
 /// InputError when no stretch is prescribed or one is not positive; NumericalFailure when the free stretch

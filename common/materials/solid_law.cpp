@@ -113,7 +113,7 @@ PlaneTangent SolidLaw::plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres
     const double slope = stress + 0.5 * c33 * c33 * d.thickness;
     if (!std::isfinite(stress) || !(d.thickness > 0)) break;
     if (std::abs(stress) <= tolerance * std::abs(slope))
-      return {{r.energy, r.stress.topLeftCorner<2, 2>(), r.exponent, c33},
+      return {{r.energy, r.exponent, c33, r.stress.topLeftCorner<2, 2>()},
               d.plane - d.coupling * d.coupling.transpose() / d.thickness};
     const double newton = slope > 0 ? -stress / slope : (stress > 0 ? -longest_step : longest_step);
     log_c33 += std::clamp(newton, -longest_step, longest_step);
