@@ -23,9 +23,12 @@ ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> she
       power_(shell_ ? shell_->x().size() : 0),
       last_velocity_(shell_ ? shell_->x().size() : 0, Vec3::Zero()),
       change_(last_velocity_),
+      probed_x_(shell_ ? shell_->x() : Points{}),
       scratch_(flow.slab()) {}
 
 void ImmersedFlow::probe() {
+  probed_ = steps_;
+  probed_x_ = shell_->x();
   shell_->update_tangent();
   const double per_density = 1 / flow_.parameters().density;
   const Operator stiffness = [&](const Points& y, Points& f) { shell_->tangent_product(y, f); };
@@ -42,10 +45,13 @@ void ImmersedFlow::probe() {
 double ImmersedFlow::plan(double at_most) {
   if (shell_) {
     transfer_.locate(shell_->coupling_points());
-    if (steps_ % settings_.probe_interval == 0) probe();
-    if (shell_->largest_stretch() > settings_.largest_stretch)
+    const ImmersedShell::EdgeStretch stretch = shell_->edge_stretch(probed_x_);
+    if (stretch.largest > settings_.largest_stretch)
       throw NumericalFailure("coupling: a leaflet edge is {:.3g} times as long as in its stress-free shape",
-                             shell_->largest_stretch());
+                             stretch.largest);
+    if (steps_ == 0 || steps_ - probed_ >= settings_.probe_interval ||
+        stretch.change > settings_.probe_strain)
+      probe();
   }
   StepLimits limits = settings_.limits;
   limits.safety *= caution_;
@@ -96,27 +102,31 @@ std::map<std::string, state::Array> ImmersedFlow::save() const {
     arrays["coupling/direction"] = state::Array::of(power_.direction());
     arrays["coupling/velocity"] = state::Array::of(last_velocity_);
     arrays["coupling/change"] = state::Array::of(change_);
+    arrays["coupling/probed_points"] = state::Array::of(probed_x_);
   }
-  arrays["coupling/history"] = state::Array::of(
-      std::vector<double>{static_cast<double>(steps_), last_dt_, max_speed_, caution_, power_.eigenvalue()});
+  arrays["coupling/history"] =
+      state::Array::of(std::vector<double>{static_cast<double>(steps_), last_dt_, max_speed_, caution_,
+                                           power_.eigenvalue(), static_cast<double>(probed_)});
   return arrays;
 }
 
 void ImmersedFlow::load(const state::State& state) {
   flow_.load(state);
   const std::vector<double>& history = state.array("coupling/history").doubles("coupling/history");
-  if (history.size() != 5)
-    throw InputError("{}: coupling/history has {} entries, expected 5", state.source, history.size());
+  if (history.size() != 6)
+    throw InputError("{}: coupling/history has {} entries, expected 6", state.source, history.size());
   steps_ = static_cast<long>(history[0]);
   last_dt_ = history[1];
   max_speed_ = history[2];
   caution_ = history[3];
+  probed_ = static_cast<long>(history[5]);
   if (!shell_) return;
   Points x = state.array("coupling/points").points("coupling/points");
   Points direction = state.array("coupling/direction").points("coupling/direction");
   last_velocity_ = state.array("coupling/velocity").points("coupling/velocity");
   change_ = state.array("coupling/change").points("coupling/change");
-  for (const Points* each : {&x, &direction, &last_velocity_, &change_})
+  probed_x_ = state.array("coupling/probed_points").points("coupling/probed_points");
+  for (const Points* each : {&x, &direction, &last_velocity_, &change_, &probed_x_})
     if (each->size() != shell_->x().size())
       throw InputError("{}: coupling/... has {} nodes, the leaflets have {}", state.source, each->size(),
                        shell_->x().size());

@@ -1,10 +1,10 @@
 // The coupled system of one time step: fluid and, where the scene has one, an immersed shell.
 //
-//   every probe_interval steps: lambda_max of (1/rho) J S K anew             (stability.hpp)
-//   dt from the limits;  0D models of the ends to t + dt;  F = F(x^n);  f = S F;  u^(n+1) by the projection
-//   method;  x^(n+1) = x^n + dt J u^(n+1) a step whose local CFL number, dt max(|u|+|v|+|w|)/h of u^(n+1),
-//   exceeds the limit is undone and repeated with a smaller dt (and AB2 begins anew), so that the limit holds
-//   for every step
+//   every probe_interval steps, or when an edge was strained: lambda_max of (1/rho) J S K anew
+//   (stability.hpp) dt from the limits;  0D models of the ends to t + dt;  F = F(x^n);  f = S F;  u^(n+1) by
+//   the projection method;  x^(n+1) = x^n + dt J u^(n+1) a step whose local CFL number, dt max(|u|+|v|+|w|)/h
+//   of u^(n+1), exceeds the limit is undone and repeated with a smaller dt (and AB2 begins anew), so that the
+//   limit holds for every step
 // with S and J at x^n (leaflets that touch: at their standoff, standoff.hpp): symplectic Euler for the
 // structure, so that no energy is put in by the lag.
 #pragma once
@@ -24,6 +24,8 @@ struct ImmersedFlowSettings {
   Kernel kernel{Basis::ib4, Basis::ib4};
   StepLimits limits;
   int probe_interval = 8;        ///< steps between estimates of lambda_max
+  double probe_strain = 0.003;   ///< or sooner, once an edge has changed its length by this share: there the
+                                 ///< fibres' stiffness grows by a third
   int probe_iterations = 2;      ///< power iterations each
   int first_iterations = 40;     ///< at the start, from a random direction
   double largest_stretch = 1.6;  ///< alarm: an edge longer than this times its reference length
@@ -69,9 +71,10 @@ class ImmersedFlow {
   Transfer transfer_;
   PowerIteration power_;
   Points last_velocity_, change_;  // of the nodes in the last step; its difference to the step before
+  Points probed_x_;                // where lambda_max was last looked for
   fluid::FaceField scratch_;
   Points force_, velocity_;
-  long steps_ = 0;
+  long steps_ = 0, probed_ = 0;
   double last_dt_ = 0, max_speed_ = 0, caution_ = 1;
 };
 

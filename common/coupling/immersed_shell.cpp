@@ -98,16 +98,17 @@ void ImmersedShell::move(const Points& velocity, double dt) {
   moved();
 }
 
-double ImmersedShell::largest_stretch() const {
+ImmersedShell::EdgeStretch ImmersedShell::edge_stretch(const Points& since) const {
   const structure::ShellMesh& mesh = shell_.mesh();
-  double largest = 0;
+  double largest = 0, change = 0;  // of squares
   for (const Triangle& t : mesh.triangles)
     for (int e = 0; e < 3; ++e) {
       const int a = t[e], b = t[(e + 1) % 3];
-      largest = std::max(
-          largest, (x_[a] - x_[b]).squaredNorm() / (mesh.reference[a] - mesh.reference[b]).squaredNorm());
+      const double now = (x_[a] - x_[b]).squaredNorm(), then = (since[a] - since[b]).squaredNorm();
+      largest = std::max(largest, now / (mesh.reference[a] - mesh.reference[b]).squaredNorm());
+      change = std::max(change, std::abs(now - then) / then);
     }
-  return std::sqrt(largest);
+  return {std::sqrt(largest), 0.5 * change};
 }
 
 }  // namespace valsalva::coupling

@@ -49,8 +49,11 @@ class ImmersedShell {
 
   /// x += dt u for free nodes. NumericalFailure when a node is not finite or faster than 2e4 mm/s.
   void move(const Points& velocity, double dt);
-  /// The largest present length of a triangle's edge over its reference length.
-  double largest_stretch() const;
+  struct EdgeStretch {
+    double largest = 1;  ///< present length of an edge over its reference length
+    double change = 0;   ///< largest relative change of an edge's length since the positions given
+  };
+  EdgeStretch edge_stretch(const Points& since) const;
 
  private:
   void moved();
