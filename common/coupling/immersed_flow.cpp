@@ -39,7 +39,7 @@ void ImmersedFlow::probe() {
     for (Vec3& each : v) each *= per_density;
   };
   power_.run(stiffness, mobility, steps_ == 0 ? settings_.first_iterations : settings_.probe_iterations);
-  if (steps_ > 0) power_.look_along(change_, stiffness, mobility);
+  if (steps_ > 0) power_.look_along(change_, stiffness, mobility, settings_.look_iterations);
 }
 
 double ImmersedFlow::plan(double at_most) {

@@ -24,9 +24,10 @@ struct ImmersedFlowSettings {
   Kernel kernel{Basis::ib4, Basis::ib4};
   StepLimits limits;
   int probe_interval = 8;        ///< steps between estimates of lambda_max
-  double probe_strain = 0.003;   ///< or sooner, once an edge has changed its length by this share: there the
-                                 ///< fibres' stiffness grows by a third
+  double probe_strain = 0.002;   ///< or sooner, once an edge has changed its length by this share: there the
+                                 ///< fibres' stiffness grows by a fifth
   int probe_iterations = 2;      ///< power iterations each
+  int look_iterations = 3;       ///< along the nodes' last change of velocity
   int first_iterations = 40;     ///< at the start, from a random direction
   double largest_stretch = 1.6;  ///< alarm: an edge longer than this times its reference length
 };

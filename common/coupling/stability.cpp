@@ -37,9 +37,9 @@ std::optional<double> PowerIteration::quotient(const Points& direction, const Op
   return dot(force_, next_) / energy;
 }
 
-void PowerIteration::take_next() {
+void PowerIteration::take_next(Points& direction) const {
   const double size = std::sqrt(dot(next_, next_));
-  for (std::size_t a = 0; a < direction_.size(); ++a) direction_[a] = next_[a] / size;
+  for (std::size_t a = 0; a < direction.size(); ++a) direction[a] = next_[a] / size;
 }
 
 double PowerIteration::run(const Operator& stiffness, const Operator& mobility, int iterations) {
@@ -47,17 +47,22 @@ double PowerIteration::run(const Operator& stiffness, const Operator& mobility, 
     const std::optional<double> found = quotient(direction_, stiffness, mobility);
     if (!found) return eigenvalue_ = 0;
     eigenvalue_ = *found;
-    take_next();
+    take_next(direction_);
   }
   return eigenvalue_;
 }
 
-double PowerIteration::look_along(const Points& direction, const Operator& stiffness,
-                                  const Operator& mobility) {
-  const std::optional<double> found = quotient(direction, stiffness, mobility);
+double PowerIteration::look_along(Points direction, const Operator& stiffness, const Operator& mobility,
+                                  int iterations) {
+  std::optional<double> found;
+  for (int i = 0; i < iterations; ++i) {
+    found = quotient(direction, stiffness, mobility);
+    if (!found) return eigenvalue_;
+    take_next(direction);
+  }
   if (found && *found > eigenvalue_) {
     eigenvalue_ = *found;
-    take_next();
+    direction_ = std::move(direction);
   }
   return eigenvalue_;
 }

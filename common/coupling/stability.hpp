@@ -32,8 +32,9 @@ class PowerIteration {
   /// Some iterations on mobility * stiffness; returns the eigenvalue's estimate (1/s2), 0 for a zero
   /// stiffness.
   double run(const Operator& stiffness, const Operator& mobility, int iterations);
-  /// One product along another direction, which takes the place of the present one if its quotient is larger.
-  double look_along(const Points& direction, const Operator& stiffness, const Operator& mobility);
+  /// Some iterations from another direction, which takes the place of the present one if its quotient is
+  /// larger. The first ones take the flow's smooth changes out of it.
+  double look_along(Points direction, const Operator& stiffness, const Operator& mobility, int iterations);
   double eigenvalue() const { return eigenvalue_; }
   /// 2 / sqrt(lambda); infinite for lambda = 0.
   double critical_step() const;
@@ -45,7 +46,7 @@ class PowerIteration {
   /// Rayleigh quotient along `direction`; next_ is the product. Nothing for a direction without stiffness.
   std::optional<double> quotient(const Points& direction, const Operator& stiffness,
                                  const Operator& mobility);
-  void take_next();
+  void take_next(Points& direction) const;
 
   Points direction_, force_, next_;
   double eigenvalue_ = 0;

@@ -65,9 +65,9 @@ TEST(PowerIteration, FindsANewModeAlongTheMotion) {
   second = 15;
   EXPECT_NEAR(power.run(springs, same, 2), 10, 1e-9);
   const Points motion{Vec3::Zero(), Vec3(1e-3, 0, 0)};
-  EXPECT_NEAR(power.look_along(motion, springs, same), 15, 1e-9);
+  EXPECT_NEAR(power.look_along(motion, springs, same, 1), 15, 1e-9);
   EXPECT_NEAR(power.run(springs, same, 2), 15, 1e-9);
-  EXPECT_NEAR(power.look_along({Vec3(1, 0, 0), Vec3::Zero()}, springs, same), 15, 1e-9);
+  EXPECT_NEAR(power.look_along({Vec3(1, 0, 0), Vec3::Zero()}, springs, same, 3), 15, 1e-9);
 }
 
 TEST(PowerIteration, NoStiffnessNoLimit) {
