@@ -47,13 +47,19 @@ double arcsine_slope(double s) {
 BeamNetwork::Sines BeamNetwork::sines(const Points& x, const std::vector<Eigen::Quaterniond>& rotation,
                                       int element, int offset, int rotation_offset) const {
   const Edge& e = mesh_.elements[element];
+  return sines(x[offset + e[0]], x[offset + e[1]], rotation[rotation_offset + e[0]],
+               rotation[rotation_offset + e[1]], element);
+}
+
+BeamNetwork::Sines BeamNetwork::sines(const Vec3& xa, const Vec3& xb, const Eigen::Quaterniond& ra,
+                                      const Eigen::Quaterniond& rb, int element) const {
   const Mat3& axes = elements_[element].axes;
   Sines s;
-  const Vec3 chord = x[offset + e[1]] - x[offset + e[0]];
+  const Vec3 chord = xb - xa;
   s.length = chord.norm();
   s.p = chord / s.length;
-  s.a = rotation[rotation_offset + e[0]].toRotationMatrix() * axes;
-  s.b = rotation[rotation_offset + e[1]].toRotationMatrix() * axes;
+  s.a = ra.toRotationMatrix() * axes;
+  s.b = rb.toRotationMatrix() * axes;
   s.az = -s.p.dot(s.a.col(1));
   s.ay = s.p.dot(s.a.col(2));
   s.bz = -s.p.dot(s.b.col(1));
@@ -131,37 +137,75 @@ std::vector<double> BeamNetwork::lumped_inertia() const {
 double BeamNetwork::add_forces(const Points& x, const std::vector<Eigen::Quaterniond>& rotation,
                                Points& force, Points& moment, int offset, int rotation_offset) const {
   double energy = 0;
+  Ends ends;
   for (int i = 0; i < elements(); ++i) {
     const Edge& e = mesh_.elements[i];
-    const Element& k = elements_[i];
-    const Sines s = sines(x, rotation, i, offset, rotation_offset);
-    const Angles now = angles_of(s);
-    const double stretch = now.length - k.rest.length;
-    const double az = now.az - k.rest.az, bz = now.bz - k.rest.bz;
-    const double ay = now.ay - k.rest.ay, by = now.by - k.rest.by;
-    const double twist = now.twist - k.rest.twist;
-    energy += 0.5 * k.axial * stretch * stretch + 2 * k.bend_z * (az * az + az * bz + bz * bz) +
-              2 * k.bend_y * (ay * ay + ay * by + by * by) + 0.5 * k.torsion * twist * twist;
-    // Derivatives of the energy with respect to the sines.
-    const double daz = 2 * k.bend_z * (2 * az + bz) * arcsine_slope(s.az);
-    const double dbz = 2 * k.bend_z * (2 * bz + az) * arcsine_slope(s.bz);
-    const double day = 2 * k.bend_y * (2 * ay + by) * arcsine_slope(s.ay);
-    const double dby = 2 * k.bend_y * (2 * by + ay) * arcsine_slope(s.by);
-    const double dtwist = k.torsion * twist * arcsine_slope(s.twist);
-    // dU/dp, without the part along p, divided by l: dU/dx_b.
-    const Vec3 dp = -daz * s.a.col(1) + day * s.a.col(2) - dbz * s.b.col(1) + dby * s.b.col(2);
-    const Vec3 dx = k.axial * stretch * s.p + (dp - dp.dot(s.p) * s.p) / s.length;
-    force[offset + e[0]] += dx;
-    force[offset + e[1]] -= dx;
-    // d(p . t)/d(rotation of t) = t x p; the twist likewise.
-    const Vec3 ma = -daz * s.a.col(1).cross(s.p) + day * s.a.col(2).cross(s.p) +
-                    0.5 * dtwist * (s.a.col(2).cross(s.b.col(1)) - s.a.col(1).cross(s.b.col(2)));
-    const Vec3 mb = -dbz * s.b.col(1).cross(s.p) + dby * s.b.col(2).cross(s.p) +
-                    0.5 * dtwist * (s.b.col(1).cross(s.a.col(2)) - s.b.col(2).cross(s.a.col(1)));
-    moment[rotation_offset + e[0]] -= ma;
-    moment[rotation_offset + e[1]] -= mb;
+    energy += element_forces(sines(x, rotation, i, offset, rotation_offset), i, ends);
+    for (int a = 0; a < 2; ++a) {
+      force[offset + e[a]] += ends.force[a];
+      moment[rotation_offset + e[a]] += ends.moment[a];
+    }
   }
   return energy;
+}
+
+double BeamNetwork::element_forces(const Sines& s, int i, Ends& out) const {
+  const Element& k = elements_[i];
+  const Angles now = angles_of(s);
+  const double stretch = now.length - k.rest.length;
+  const double az = now.az - k.rest.az, bz = now.bz - k.rest.bz;
+  const double ay = now.ay - k.rest.ay, by = now.by - k.rest.by;
+  const double twist = now.twist - k.rest.twist;
+  const double energy = 0.5 * k.axial * stretch * stretch + 2 * k.bend_z * (az * az + az * bz + bz * bz) +
+                        2 * k.bend_y * (ay * ay + ay * by + by * by) + 0.5 * k.torsion * twist * twist;
+  // Derivatives of the energy with respect to the sines.
+  const double daz = 2 * k.bend_z * (2 * az + bz) * arcsine_slope(s.az);
+  const double dbz = 2 * k.bend_z * (2 * bz + az) * arcsine_slope(s.bz);
+  const double day = 2 * k.bend_y * (2 * ay + by) * arcsine_slope(s.ay);
+  const double dby = 2 * k.bend_y * (2 * by + ay) * arcsine_slope(s.by);
+  const double dtwist = k.torsion * twist * arcsine_slope(s.twist);
+  // dU/dp, without the part along p, divided by l: dU/dx_b.
+  const Vec3 dp = -daz * s.a.col(1) + day * s.a.col(2) - dbz * s.b.col(1) + dby * s.b.col(2);
+  const Vec3 dx = k.axial * stretch * s.p + (dp - dp.dot(s.p) * s.p) / s.length;
+  out.force = {dx, Vec3(-dx)};
+  // d(p . t)/d(rotation of t) = t x p; the twist likewise.
+  const Vec3 ma = -daz * s.a.col(1).cross(s.p) + day * s.a.col(2).cross(s.p) +
+                  0.5 * dtwist * (s.a.col(2).cross(s.b.col(1)) - s.a.col(1).cross(s.b.col(2)));
+  const Vec3 mb = -dbz * s.b.col(1).cross(s.p) + dby * s.b.col(2).cross(s.p) +
+                  0.5 * dtwist * (s.b.col(1).cross(s.a.col(2)) - s.b.col(2).cross(s.a.col(1)));
+  out.moment = {Vec3(-ma), Vec3(-mb)};
+  return energy;
+}
+
+void BeamNetwork::add_tangent(const Points& x, const std::vector<Eigen::Quaterniond>& rotation,
+                              BlockMatrix& out, int offset, int rotation_offset) const {
+  Eigen::MatrixXd k(12, 12);  // a, b, spin of a, spin of b
+  const auto stacked = [](const Ends& f) {
+    return (Eigen::Matrix<double, 12, 1>() << f.force[0], f.force[1], f.moment[0], f.moment[1]).finished();
+  };
+  for (int i = 0; i < elements(); ++i) {
+    const Edge& e = mesh_.elements[i];
+    for (int column = 0; column < 12; ++column) {
+      const int end = column / 3 % 2, axis = column % 3;
+      const double step = 1e-6 * (column < 6 ? elements_[i].length : 1);
+      Ends ends[2];
+      for (int side = 0; side < 2; ++side) {
+        const double change = side == 0 ? step : -step;
+        std::array<Vec3, 2> at{x[offset + e[0]], x[offset + e[1]]};
+        std::array<Eigen::Quaterniond, 2> turn{rotation[rotation_offset + e[0]],
+                                               rotation[rotation_offset + e[1]]};
+        if (column < 6)
+          at[end][axis] += change;
+        else
+          turn[end] = Eigen::AngleAxisd(change, Vec3::Unit(axis)) * turn[end];
+        element_forces(sines(at[0], at[1], turn[0], turn[1], i), i, ends[side]);
+      }
+      k.col(column) = (stacked(ends[1]) - stacked(ends[0])) / (2 * step);
+    }
+    const std::array<int, 4> slots{offset + e[0], offset + e[1], out.slot_of_rotation(rotation_offset + e[0]),
+                                   out.slot_of_rotation(rotation_offset + e[1])};
+    out.add(slots, k);
+  }
 }
 
 void BeamNetwork::add_stiffness_bound(const Points& x, StiffnessBound& out, int offset,

@@ -67,6 +67,10 @@ class BeamNetwork {
                     Points& moment, int offset = 0, int rotation_offset = 0) const;
   void add_stiffness_bound(const Points& x, StiffnessBound& out, int offset = 0,
                            int rotation_offset = 0) const;
+  /// 12x12 a beam, by central differences of its forces and moments over positions and spins (1e-6 of its
+  /// length, 1e-6 rad: eight digits). Not symmetric where a moment acts.
+  void add_tangent(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, BlockMatrix& out,
+                   int offset = 0, int rotation_offset = 0) const;
   BeamState element_state(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, int element,
                           int offset = 0, int rotation_offset = 0) const;
 
@@ -83,8 +87,14 @@ class BeamNetwork {
     double mass;
   };
   struct Sines;
+  struct Ends {  // forces and moments on the two ends
+    std::array<Vec3, 2> force, moment;
+  };
+  Sines sines(const Vec3& xa, const Vec3& xb, const Eigen::Quaterniond& ra, const Eigen::Quaterniond& rb,
+              int element) const;
   Sines sines(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, int element, int offset,
               int rotation_offset) const;
+  double element_forces(const Sines& s, int element, Ends& out) const;
   static Angles angles_of(const Sines& s);
   BeamMesh mesh_;
   std::vector<Element> elements_;
@@ -102,6 +112,9 @@ class BeamTerm : public ForceTerm {
   }
   void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const override {
     network_->add_stiffness_bound(now.x, out, body_.offset, body_.rotation_offset);
+  }
+  void add_tangent(const Configuration& now, BlockMatrix& out) const override {
+    network_->add_tangent(now.x, now.rotation, out, body_.offset, body_.rotation_offset);
   }
   const BeamNetwork& network() const { return *network_; }
 

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "core/errors.hpp"
+#include "structure/block_matrix.hpp"
 #include "structure/system.hpp"
 
 namespace valsalva::structure {
@@ -22,6 +24,12 @@ class ForceTerm {
   /// Adds an upper bound of the stiffness's absolute row sums at this configuration, from which the
   /// integrator takes the stable step, dt <= 2 / sqrt(max_i k_i / m_i), or the mass scaling for a given step.
   virtual void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const = 0;
+
+  /// Adds the stiffness -d(force)/d(position), for implicit solution; it may be an approximation, which costs
+  /// Newton iterations but not accuracy. InputError from a term that has none.
+  virtual void add_tangent(const Configuration&, BlockMatrix&) const {
+    throw InputError("'{}' has no tangent stiffness: use the explicit integrator for this scene", name());
+  }
 
   /// True where that bound changes from one step to the next, as when contact forms: it is then taken anew in
   /// every step, not only when all bounds are.

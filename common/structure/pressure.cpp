@@ -37,4 +37,16 @@ void PressureTerm::add_stiffness_bound(const Configuration& now, StiffnessBound&
   }
 }
 
+void PressureTerm::add_tangent(const Configuration& now, BlockMatrix& out) const {
+  const double p = pressure_(now.time_s);
+  if (p == 0) return;
+  for (const Triangle& t : triangles_)
+    for (int k = 0; k < 3; ++k) {
+      // Moving node k changes the area vector by half its displacement x the opposite edge.
+      const Vec3 opposite = now.x[body_.offset + t[(k + 2) % 3]] - now.x[body_.offset + t[(k + 1) % 3]];
+      const Mat3 change = -p / 6 * cross_matrix(opposite);
+      for (int a : t) out.add(body_.offset + a, body_.offset + t[k], change);
+    }
+}
+
 }  // namespace valsalva::structure

@@ -19,6 +19,8 @@ class PressureTerm : public ForceTerm {
   std::string name() const override { return name_; }
   double add_forces(const Configuration& now, Forces& out) const override;
   void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const override;
+  /// Exact; not symmetric at the rim.
+  void add_tangent(const Configuration& now, BlockMatrix& out) const override;
 
  private:
   std::string name_;

@@ -38,7 +38,7 @@ void require_size(const char* what, Count found, Count expected) {
 
 }  // namespace
 
-Shell::Shell(ShellMesh mesh, std::shared_ptr<const materials::InvariantLaw> law, Bending bending)
+Shell::Shell(ShellMesh mesh, std::shared_ptr<const materials::PlaneLaw> law, Bending bending)
     : mesh_(std::move(mesh)), law_(std::move(law)) {
   VALSALVA_ASSERT(law_);
   require_size("thickness (per node)", mesh_.thickness_mm.size(), mesh_.reference.size());
@@ -299,7 +299,8 @@ double Shell::max_exponent(const Points& x, int offset) const {
   return largest;
 }
 
-ShellTangent::ShellTangent(const Shell& shell, Part part) : shell_(shell), part_(part) {
+ShellTangent::ShellTangent(const Shell& shell, Part part, Geometric geometric)
+    : shell_(shell), part_(part), geometric_(geometric) {
   const Range e = share(shell.elements(), part), h = share(shell.hinges(), part);
   element_.resize(e.end - e.begin);
   hinge_.resize(h.end - h.begin);
@@ -337,7 +338,8 @@ void ShellTangent::update(const Points& x, int offset) {
     ElementMatrix& k = element_[e - own_elements.begin];
     const Eigen::Matrix<double, 3, 9> stressed = volume * response.tangent * strain;
     k.noalias() = strain.transpose().lazyProduct(stressed);
-    const Eigen::Matrix3d pull = volume * shape * clipped * shape.transpose();
+    const Eigen::Matrix3d pull =
+        volume * shape * (geometric_ == Geometric::exact ? response.at.stress : clipped) * shape.transpose();
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) k.block<3, 3>(3 * a, 3 * b).diagonal().array() += pull(a, b);
   }
@@ -383,6 +385,41 @@ void ShellTangent::add_row_sums(std::vector<double>& bound, int offset) const {
     const double total = v.cwiseAbs().sum();
     for (int a = 0; a < 4; ++a)
       bound[offset + shell_.hinges_[h].nodes[a]] += total * v.segment<3>(3 * a).cwiseAbs().maxCoeff();
+  }
+}
+
+void ShellTangent::add_membrane(BlockMatrix& out, int offset) const {
+  const Range own = share(shell_.elements(), part_);
+  for (int e = own.begin; e < own.end; ++e) {
+    std::array<int, 3> slots = shell_.mesh_.triangles[e];
+    for (int& a : slots) a += offset;
+    out.add(slots, element_[e - own.begin]);
+  }
+}
+
+void Shell::add_tangent(const Points& x, BlockMatrix& out, int offset) const {
+  ShellTangent tangent(*this, {}, ShellTangent::Geometric::exact);
+  tangent.update(x, offset);
+  tangent.add_membrane(out, offset);
+  Points moved = x;
+  Eigen::MatrixXd k(12, 12);
+  for (int h = 0; h < hinges(); ++h) {
+    std::array<int, 4> slots = hinges_[h].nodes;
+    for (int& a : slots) a += offset;
+    const double step = 1e-6 * (x[slots[1]] - x[slots[0]]).norm();
+    for (int column = 0; column < 12; ++column) {
+      double& at = moved[slots[column / 3]][column % 3];
+      const double here = at;
+      std::array<Vec3, 4> ahead, behind;
+      at = here + step;
+      hinge_forces(moved, offset, h, ahead);
+      at = here - step;
+      hinge_forces(moved, offset, h, behind);
+      at = here;
+      for (int a = 0; a < 4; ++a) k.block<3, 1>(3 * a, column) = (behind[a] - ahead[a]) / (2 * step);
+    }
+    k = (0.5 * (k + k.transpose())).eval();
+    out.add(slots, k);
   }
 }
 

@@ -19,6 +19,7 @@
 
 #include "core/types.hpp"
 #include "materials/plane_stress.hpp"
+#include "structure/block_matrix.hpp"
 
 namespace valsalva::structure {
 
@@ -52,7 +53,7 @@ struct ElementState {
 class Shell {
  public:
   /// InputError names the triangle that is degenerate or the entry that has a wrong size or value.
-  Shell(ShellMesh mesh, std::shared_ptr<const materials::InvariantLaw> law, Bending bending);
+  Shell(ShellMesh mesh, std::shared_ptr<const materials::PlaneLaw> law, Bending bending);
 
   int nodes() const { return static_cast<int>(mesh_.reference.size()); }
   int elements() const { return static_cast<int>(mesh_.triangles.size()); }
@@ -77,6 +78,10 @@ class Shell {
   /// + a].
   void add_stiffness_bound(const Points& x, std::vector<double>& bound, int offset = 0) const;
 
+  /// The consistent tangent: geometric part not clipped, hinges by central differences of their gradient
+  /// (1e-6 of the edge).
+  void add_tangent(const Points& x, BlockMatrix& out, int offset = 0) const;
+
   ElementState element_state(const Points& x, int element, int offset = 0) const;
   /// The largest exponent Q over all elements; the law's exponential is continued beyond Q = 6.
   double max_exponent(const Points& x, int offset = 0) const;
@@ -100,7 +105,7 @@ class Shell {
   void build_hinges(const Bending& bending);
 
   ShellMesh mesh_;
-  std::shared_ptr<const materials::InvariantLaw> law_;
+  std::shared_ptr<const materials::PlaneLaw> law_;
   std::vector<Element> elements_;
   std::vector<Hinge> hinges_;
 };
@@ -108,18 +113,22 @@ class Shell {
 /// The tangent in two phases, for power iteration: update once, apply many times.
 class ShellTangent {
  public:
-  explicit ShellTangent(const Shell& shell, Part part = {});
+  enum class Geometric { clipped, exact };  ///< the part of the membrane stress
+  explicit ShellTangent(const Shell& shell, Part part = {}, Geometric geometric = Geometric::clipped);
   void update(const Points& x, int offset = 0);
   /// out[offset + a] += (K direction)[a]
   void apply(const Points& direction, Points& out, int offset = 0) const;
   /// Absolute row sums: per node, the largest of its three rows; summed over elements (an upper bound).
   void add_row_sums(std::vector<double>& bound, int offset = 0) const;
+  /// The membrane's matrices.
+  void add_membrane(BlockMatrix& out, int offset = 0) const;
 
  private:
   using ElementMatrix = Eigen::Matrix<double, 9, 9>;
   using HingeVector = Eigen::Matrix<double, 12, 1>;
   const Shell& shell_;
   Part part_;
+  Geometric geometric_;
   std::vector<ElementMatrix> element_;
   std::vector<HingeVector> hinge_;  // sqrt(k) grad(theta)
 };

@@ -19,6 +19,9 @@ class ShellTerm : public ForceTerm {
   void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const override {
     shell_->add_stiffness_bound(now.x, out.translation, body_.offset);
   }
+  void add_tangent(const Configuration& now, BlockMatrix& out) const override {
+    shell_->add_tangent(now.x, out, body_.offset);
+  }
   const Shell& shell() const { return *shell_; }
 
  private:

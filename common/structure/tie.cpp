@@ -55,6 +55,27 @@ void TieTerm::add_stiffness_bound(const Configuration& now, StiffnessBound& out)
   }
 }
 
+void TieTerm::add_tangent(const Configuration& now, BlockMatrix& out) const {
+  for (std::size_t i = 0; i < ties_.size(); ++i) {
+    const Tie& t = ties_[i];
+    const Mat3 spring = t.stiffness_uN_per_mm * Mat3::Identity();
+    out.add(t.tissue, t.tissue, spring);
+    out.add(t.frame, t.frame, spring);
+    out.add(t.tissue, t.frame, -spring);
+    out.add(t.frame, t.tissue, -spring);
+    if (rotation_[i] < 0) continue;
+    const int turn = out.slot_of_rotation(rotation_[i]);
+    const Vec3 lever = arm(now, i);
+    const Vec3 pull = t.stiffness_uN_per_mm * (now.x[t.tissue] - now.x[t.frame] - lever);
+    const Mat3 l = cross_matrix(lever), kl = t.stiffness_uN_per_mm * l;
+    out.add(t.tissue, turn, kl);
+    out.add(t.frame, turn, -kl);
+    out.add(turn, t.tissue, -kl);
+    out.add(turn, t.frame, kl);
+    out.add(turn, turn, -kl * l - cross_matrix(pull) * l);
+  }
+}
+
 double TieTerm::max_gap(const Configuration& now) const {
   double largest = 0;
   for (std::size_t i = 0; i < ties_.size(); ++i)

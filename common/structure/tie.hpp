@@ -26,6 +26,8 @@ class TieTerm : public ForceTerm {
   std::string name() const override { return name_; }
   double add_forces(const Configuration& now, Forces& out) const override;
   void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const override;
+  /// Exact.
+  void add_tangent(const Configuration& now, BlockMatrix& out) const override;
   /// The largest |d|, mm.
   double max_gap(const Configuration& now) const;
   const std::vector<Tie>& ties() const { return ties_; }

@@ -1,0 +1,57 @@
+// The stiffness -d(force)/d(position) of a System: a sparse sum of element matrices in blocks of 3x3.
+//
+// A block row is a slot: node a is slot a, rotation r is slot nodes + r. The increment of a rotation is a
+// spin w in space, R <- exp(w) R, and its row is that of the moment in space. The pattern grows as blocks are
+// added and stays from one assembly to the next; sums have the order of the calls.
+// Units: uN/mm, uN/rad, uN mm/mm, uN mm/rad.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace valsalva::structure {
+
+class BlockMatrix {
+ public:
+  struct Row {
+    std::vector<int> columns;  ///< ascending slots
+    std::vector<Mat3> blocks;
+  };
+
+  BlockMatrix(std::size_t nodes, std::size_t rotations) : nodes_(nodes), rows_(nodes + rotations) {}
+  int slots() const { return static_cast<int>(rows_.size()); }
+  int nodes() const { return static_cast<int>(nodes_); }
+  int slot_of_rotation(int rotation) const { return nodes() + rotation; }
+  const Row& row(int slot) const { return rows_[slot]; }
+
+  /// Values to zero; the pattern stays.
+  void set_zero();
+  /// Adds the 3n x 3n matrix k of the n given slots.
+  void add(std::span<const int> slots, const Eigen::Ref<const Eigen::MatrixXd>& k);
+  void add(int row, int column, const Mat3& k) { block(row, column) += k; }
+  /// Changes whenever the pattern grows.
+  long pattern_version() const { return version_; }
+  /// K_ij <- Q_i^T K_ij Q_j, Q the given frames (columns: axes) of some slots, the identity elsewhere.
+  void turn(const std::map<int, Mat3>& frames);
+  /// All values times a factor.
+  void scale(double factor);
+  /// out = K u, both 3 a slot.
+  Eigen::VectorXd times(const Eigen::VectorXd& u) const;
+
+ private:
+  Mat3& block(int row, int column);
+  std::size_t nodes_;
+  std::vector<Row> rows_;
+  long version_ = 0;
+};
+
+/// [v]x, so that [v]x w = v x w.
+inline Mat3 cross_matrix(const Vec3& v) {
+  return (Mat3() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
+}
+
+}  // namespace valsalva::structure

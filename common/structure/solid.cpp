@@ -1,0 +1,496 @@
+#include "structure/solid.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "core/errors.hpp"
+#include "materials/voigt.hpp"
+
+namespace valsalva::structure {
+
+using materials::Derivatives;
+using materials::ElasticResponse;
+
+namespace {
+
+// Runs work(i) for all i on the threads; the failure of the lowest index is reported.
+template <class Work>
+void for_all(int count, const char* what, int first, const Work& work) {
+  int failed = count;
+  std::string message;
+#pragma omp parallel for schedule(static) if (count > 30)
+  for (int i = 0; i < count; ++i) {
+    try {
+      work(i);
+    } catch (const NumericalFailure& failure) {
+#pragma omp critical
+      if (i < failed) {
+        failed = i;
+        message = failure.what();
+      }
+    }
+  }
+  if (failed < count) throw NumericalFailure("{} {}: {}", what, first + failed, message);
+}
+
+// dE in Voigt order per nodal displacement.
+void strain_matrix(const Mat3& f, const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>>& gradient,
+                   Eigen::Matrix<double, 6, Eigen::Dynamic>& b) {
+  for (int a = 0; a < gradient.cols(); ++a) {
+    const Vec3 g = gradient.col(a);
+    for (int m = 0; m < 6; ++m) {
+      const auto [i, j] = materials::voigt_pair[m];
+      const Vec3 row = i == j ? Vec3(g[i] * f.col(i)) : Vec3(g[j] * f.col(i) + g[i] * f.col(j));
+      b.block<1, 3>(m, 3 * a) = row.transpose();
+    }
+  }
+}
+
+Mat3 cofactor(const Mat3& f) {
+  Mat3 c;
+  c.col(0) = f.col(1).cross(f.col(2));
+  c.col(1) = f.col(2).cross(f.col(0));
+  c.col(2) = f.col(0).cross(f.col(1));
+  return c;
+}
+
+}  // namespace
+
+void SolidMesh::add(Shape shape, std::span<const int> nodes) {
+  if (offsets.empty()) offsets.push_back(0);
+  connectivity.insert(connectivity.end(), nodes.begin(), nodes.end());
+  offsets.push_back(static_cast<int>(connectivity.size()));
+  shapes.push_back(shape);
+}
+
+// An element at its present positions: F and J at its points, and the pressure there when it is mixed.
+struct Solid::Deformed {
+  std::array<Mat3, most_points> f;
+  std::array<double, most_points> j, pressure;
+  double volumetric_energy = 0;
+  Eigen::Matrix4d curvature = Eigen::Matrix4d::Zero();
+};
+
+Solid::Solid(SolidMesh mesh, std::shared_ptr<const materials::SolidLaw> law, Formulation formulation)
+    : mesh_(std::move(mesh)), law_(std::move(law)), formulation_(formulation) {
+  VALSALVA_ASSERT(law_);
+  if (formulation_ == Formulation::mixed && !(law_->bulk_modulus_Pa() > 0))
+    throw InputError(
+        "solid: the mixed formulation needs a volumetric term; the law '{}' has none: give one, or use the "
+        "displacement formulation",
+        law_->name());
+  check(mesh_);
+  build_elements();
+}
+
+void Solid::check(const SolidMesh& mesh) const {
+  const std::size_t count = mesh.shapes.size();
+  const auto require = [&](const char* what, std::size_t found) {
+    if (found != 0 && found != count)
+      throw InputError("solid: {} has {} entries; expected {}: one an element", what, found, count);
+  };
+  require("fibre1", mesh.fibre1.size());
+  require("fibre2", mesh.fibre2.size());
+  require("stiffness factor", mesh.stiffness_factor.size());
+  if (count == 0 || mesh.offsets.size() != count + 1 ||
+      mesh.offsets.back() != static_cast<int>(mesh.connectivity.size()))
+    throw InputError("solid: {} elements with {} offsets; expected at least one, and one offset more", count,
+                     mesh.offsets.size());
+  for (int e = 0; e < mesh.elements(); ++e) {
+    const Shape shape = mesh.shapes[e];
+    const int expected = structure::nodes_of(shape);
+    const int found = mesh.offsets[e + 1] - mesh.offsets[e];
+    if (dimension_of(shape) != 3 || found != expected)
+      throw InputError("solid: element {} is a {} with {} nodes; expected tet4, tet10, hex8 or hex27 with {}",
+                       e, name_of(shape), found, expected);
+    for (int a : mesh.nodes_of(e))
+      if (a < 0 || a >= static_cast<int>(mesh.reference.size()))
+        throw InputError("solid: element {} refers to node {}; the mesh has {} nodes", e, a,
+                         mesh.reference.size());
+  }
+}
+
+void Solid::build_elements() {
+  const bool mixed = formulation_ == Formulation::mixed;
+  struct Tabulated {
+    std::vector<QuadraturePoint> rule;
+    std::vector<ShapeValues> at;
+  };
+  std::map<Shape, Tabulated> tables;
+  elements_.resize(mesh_.shapes.size());
+  if (mixed) {
+    patches_.resize(mesh_.reference.size());
+    patch_volume_.assign(mesh_.reference.size(), 0.0);
+  }
+  for (int e = 0; e < elements(); ++e) {
+    const Shape shape = mesh_.shapes[e];
+    Tabulated& table = tables[shape];
+    if (table.rule.empty()) {
+      table.rule = quadrature(shape, mixed && shape == Shape::tet10 ? Rule::rich : Rule::stiffness);
+      for (const QuadraturePoint& q : table.rule) table.at.push_back(evaluate(shape, q.at));
+    }
+    const auto nodes = mesh_.nodes_of(e);
+    ElementPoints reference(3, nodes.size());
+    for (std::size_t a = 0; a < nodes.size(); ++a) reference.col(a) = mesh_.reference[nodes[a]];
+    Element& element = elements_[e];
+    element.first = static_cast<int>(points_.size());
+    element.count = static_cast<int>(table.rule.size());
+    element.factor = mesh_.stiffness_factor.empty() ? 1 : mesh_.stiffness_factor[e];
+    if (!(element.factor > 0) || !std::isfinite(element.factor))
+      throw InputError("solid: stiffness factor of element {} is {}; expected a positive one", e,
+                       element.factor);
+    element.fibres.count = 0;
+    for (const std::vector<Vec3>* fibres : {&mesh_.fibre1, &mesh_.fibre2}) {
+      if (fibres->empty()) continue;
+      const double length = (*fibres)[e].norm();
+      if (!(length > 0.1) || !std::isfinite(length))
+        throw InputError("solid: a fibre of element {} has the length {}; expected a unit vector", e, length);
+      element.fibres.direction[element.fibres.count++] = (*fibres)[e] / length;
+    }
+    for (int q = 0; q < element.count; ++q) {
+      const ShapeValues& s = table.at[q];
+      const Mat3 jacobian = reference * s.gradient.transpose();  // columns: dX/d(coordinate)
+      const double det = jacobian.determinant();
+      const double size = std::max({jacobian.col(0).norm(), jacobian.col(1).norm(), jacobian.col(2).norm()});
+      if (!(det > 1e-9 * size * size * size))
+        throw InputError(
+            "solid: element {} ({}, nodes {} ...) is reversed or flat in the reference (Jacobian {:.3g} at "
+            "point {}); reorder its nodes as VTK does, or remesh",
+            e, name_of(shape), nodes[0], det, q);
+      Point p;
+      p.weight = det * table.rule[q].weight;
+      p.gradient = gradients_.size();
+      p.modes.setZero();
+      p.reference = reference * s.value;
+      const Eigen::Matrix<double, 3, Eigen::Dynamic> gradient = jacobian.transpose().inverse() * s.gradient;
+      gradients_.insert(gradients_.end(), gradient.data(), gradient.data() + gradient.size());
+      points_.push_back(p);
+    }
+    element.modes = 0;
+    if (!mixed) continue;
+    if (shape != Shape::tet4) {
+      build_modes(e, shape);
+    } else {
+      for (int a : nodes) {
+        patches_[a].push_back(e);
+        patch_volume_[a] += points_[element.first].weight / 4;
+      }
+    }
+  }
+}
+
+// Orthonormal in the element: the projection on them needs no inverse.
+void Solid::build_modes(int e, Shape shape) {
+  Element& element = elements_[e];
+  element.modes = shape == Shape::hex27 ? 4 : 1;
+  const auto begin = points_.begin() + element.first, end = begin + element.count;
+  double volume = 0;
+  Vec3 centre = Vec3::Zero();
+  for (auto p = begin; p != end; ++p) volume += p->weight, centre += p->weight * p->reference;
+  centre /= volume;
+  const double size = std::cbrt(volume);
+  Eigen::Matrix4d mass = Eigen::Matrix4d::Identity();
+  mass.topLeftCorner(element.modes, element.modes).setZero();
+  for (auto p = begin; p != end; ++p) {
+    p->modes[0] = 1;
+    if (element.modes == 4) p->modes.tail<3>() = (p->reference - centre) / size;
+    mass += p->weight * p->modes * p->modes.transpose();
+  }
+  const Eigen::LLT<Eigen::Matrix4d> factor(mass);
+  for (auto p = begin; p != end; ++p) p->modes = factor.matrixL().solve(p->modes).eval();
+}
+
+Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>> Solid::gradient(int element,
+                                                                           const Point& p) const {
+  return {gradients_.data() + p.gradient, 3, mesh_.offsets[element + 1] - mesh_.offsets[element]};
+}
+
+double Solid::volume() const {
+  double total = 0;
+  for (const Point& p : points_) total += p.weight;
+  return total;
+}
+
+std::vector<double> Solid::lumped_mass(double density_g_per_mm3) const {
+  std::vector<double> mass(nodes(), 0.0);
+  std::map<Shape, std::vector<std::pair<double, ShapeValues>>> tables;
+  for (int e = 0; e < elements(); ++e) {
+    auto& table = tables[mesh_.shapes[e]];
+    if (table.empty())
+      for (const QuadraturePoint& q : quadrature(mesh_.shapes[e], Rule::rich))
+        table.emplace_back(q.weight, evaluate(mesh_.shapes[e], q.at));
+    const auto nodes = mesh_.nodes_of(e);
+    ElementPoints reference(3, nodes.size());
+    for (std::size_t a = 0; a < nodes.size(); ++a) reference.col(a) = mesh_.reference[nodes[a]];
+    Eigen::VectorXd square = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nodes.size()));
+    double volume = 0;
+    for (const auto& [weight, s] : table) {
+      const Mat3 jacobian = reference * s.gradient.transpose();
+      const double w = weight * jacobian.determinant();
+      volume += w;
+      square += w * s.value.cwiseAbs2();
+    }
+    square *= density_g_per_mm3 * volume / square.sum();
+    for (std::size_t a = 0; a < nodes.size(); ++a) mass[nodes[a]] += square[static_cast<Eigen::Index>(a)];
+  }
+  return mass;
+}
+
+Solid::NodalPressure Solid::nodal_pressures(const Points& x, int offset) const {
+  NodalPressure nodal;
+  if (patches_.empty()) return nodal;
+  std::vector<double> ratio(elements(), 1.0);
+  for_all(elements(), "element", 0, [&](int e) {
+    if (averaged(e)) ratio[e] = deform(x, offset, e, nodal).j[0];
+  });
+  nodal.pressure.assign(nodes(), 0.0);
+  nodal.curvature.assign(nodes(), 0.0);
+  for (int a = 0; a < nodes(); ++a) {
+    if (patches_[a].empty()) continue;
+    double volume = 0;
+    for (int e : patches_[a]) volume += points_[elements_[e].first].weight / 4 * ratio[e];
+    const materials::VolumetricResponse u = law_->volumetric(volume / patch_volume_[a]);
+    nodal.energy += patch_volume_[a] * u.energy;
+    nodal.pressure[a] = u.first;
+    nodal.curvature[a] = u.second / patch_volume_[a];
+  }
+  return nodal;
+}
+
+Solid::Deformed Solid::deform(const Points& x, int offset, int e, const NodalPressure& nodal) const {
+  const Element& element = elements_[e];
+  const auto nodes = mesh_.nodes_of(e);
+  ElementPoints now(3, nodes.size());
+  for (std::size_t a = 0; a < nodes.size(); ++a) now.col(a) = x[offset + nodes[a]];
+  Deformed d;
+  for (int q = 0; q < element.count; ++q) {
+    d.f[q].noalias() = now * gradient(e, points_[element.first + q]).transpose();
+    d.j[q] = d.f[q].determinant();
+    if (!(d.j[q] > 0) || !std::isfinite(d.j[q]))
+      throw NumericalFailure(
+          "det F = {:.3g} at quadrature point {} (near ({:.4g}, {:.4g}, {:.4g}) mm); expected a positive one",
+          d.j[q], q, now.row(0).mean(), now.row(1).mean(), now.row(2).mean());
+  }
+  if (averaged(e)) {
+    d.pressure[0] = 0;
+    if (!nodal.pressure.empty())
+      for (int a : nodes) d.pressure[0] += 0.25 * nodal.pressure[a];
+  }
+  if (element.modes == 0) return d;
+  Eigen::Vector4d dilatation = Eigen::Vector4d::Zero(), pressure = Eigen::Vector4d::Zero();
+  for (int q = 0; q < element.count; ++q) {
+    const Point& p = points_[element.first + q];
+    dilatation += p.weight * d.j[q] * p.modes;
+  }
+  for (int q = 0; q < element.count; ++q) {
+    const Point& p = points_[element.first + q];
+    const materials::VolumetricResponse u = law_->volumetric(p.modes.dot(dilatation));
+    d.volumetric_energy += p.weight * u.energy;
+    pressure += p.weight * u.first * p.modes;
+    d.curvature += p.weight * u.second * p.modes * p.modes.transpose();
+  }
+  for (int q = 0; q < element.count; ++q) d.pressure[q] = points_[element.first + q].modes.dot(pressure);
+  return d;
+}
+
+ElasticResponse Solid::respond(int e, const Deformed& d, int q, Derivatives wanted) const {
+  const Element& element = elements_[e];
+  const Mat3 c = d.f[q].transpose() * d.f[q];
+  if (formulation_ == Formulation::displacement)
+    return law_->respond(c, element.fibres, element.factor, wanted);
+  ElasticResponse r = law_->distortional(c, element.fibres, element.factor, wanted);
+  if (wanted == Derivatives::stress) {
+    r.stress += d.pressure[q] * d.j[q] * c.inverse();
+  } else {
+    const materials::PressureStress p = materials::volumetric_stress(c, d.pressure[q]);
+    r.stress += p.stress;
+    r.tangent += p.tangent;
+  }
+  return r;
+}
+
+double Solid::element_forces(const Points& x, int offset, int e, const NodalPressure& nodal,
+                             Vec3* force) const {
+  const Element& element = elements_[e];
+  const Deformed d = deform(x, offset, e, nodal);
+  const int n = mesh_.offsets[e + 1] - mesh_.offsets[e];
+  ElementPoints total = ElementPoints::Zero(3, n);
+  double energy = d.volumetric_energy;
+  for (int q = 0; q < element.count; ++q) {
+    const Point& p = points_[element.first + q];
+    const ElasticResponse r = respond(e, d, q, Derivatives::stress);
+    energy += p.weight * r.energy;
+    const Mat3 piola = p.weight * d.f[q] * r.stress;
+    total.noalias() -= piola * gradient(e, p);
+  }
+  for (int a = 0; a < n; ++a) force[a] = total.col(a);
+  return energy;
+}
+
+double Solid::add_forces(const Points& x, Points& f, int offset) const {
+  const NodalPressure nodal = nodal_pressures(x, offset);
+  thread_local std::vector<Vec3> storage;
+  thread_local std::vector<double> energies;
+  std::vector<Vec3>& slots = storage;  // the calling thread's own, seen by the team
+  std::vector<double>& energy_of = energies;
+  slots.resize(mesh_.connectivity.size());
+  energy_of.resize(mesh_.shapes.size());
+  for_all(elements(), "element", 0, [&](int e) {
+    energy_of[e] = element_forces(x, offset, e, nodal, slots.data() + mesh_.offsets[e]);
+  });
+  double energy = nodal.energy;
+  for (double part : energy_of) energy += part;
+  for (std::size_t i = 0; i < slots.size(); ++i) f[offset + mesh_.connectivity[i]] += slots[i];
+  return energy;
+}
+
+Eigen::MatrixXd Solid::element_tangent(const Points& x, int offset, int e, const NodalPressure& nodal) const {
+  const Element& element = elements_[e];
+  const Deformed d = deform(x, offset, e, nodal);
+  const int n = mesh_.offsets[e + 1] - mesh_.offsets[e];
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> b(6, 3 * n), stressed(6, 3 * n);
+  Eigen::MatrixXd dilatation = Eigen::MatrixXd::Zero(3 * n, element.modes);
+  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(n, n);
+  for (int q = 0; q < element.count; ++q) {
+    const Point& p = points_[element.first + q];
+    const auto g = gradient(e, p);
+    const ElasticResponse r = respond(e, d, q, Derivatives::tangent);
+    strain_matrix(d.f[q], g, b);
+    stressed.noalias() = p.weight * r.tangent * b;
+    k.noalias() += b.transpose() * stressed;
+    pull.noalias() += p.weight * g.transpose() * r.stress * g;
+    if (element.modes > 0) {
+      const ElementPoints slope = cofactor(d.f[q]) * g;  // dJ/dx
+      const Eigen::Map<const Eigen::VectorXd> flat(slope.data(), 3 * n);
+      for (int m = 0; m < element.modes; ++m) dilatation.col(m) += p.weight * p.modes[m] * flat;
+    }
+  }
+  for (int a = 0; a < n; ++a)
+    for (int c = 0; c < n; ++c) k.block<3, 3>(3 * a, 3 * c).diagonal().array() += pull(a, c);
+  if (element.modes > 0)
+    k.noalias() +=
+        dilatation * d.curvature.topLeftCorner(element.modes, element.modes) * dilatation.transpose();
+  return k;
+}
+
+template <class Use>
+void Solid::for_each_patch(const Points& x, int offset, const NodalPressure& nodal, const Use& use) const {
+  if (patches_.empty()) return;
+  for (int a = 0; a < nodes(); ++a) {
+    if (patches_[a].empty()) continue;
+    std::vector<int> around;
+    for (int e : patches_[a])
+      for (int b : mesh_.nodes_of(e)) around.push_back(b);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(around.size()));
+    for (int e : patches_[a]) {
+      const Point& p = points_[elements_[e].first];
+      const Deformed d = deform(x, offset, e, nodal);
+      const Eigen::Matrix<double, 3, 4> g = p.weight / 4 * cofactor(d.f[0]) * gradient(e, p);
+      const auto nodes = mesh_.nodes_of(e);
+      for (int b = 0; b < 4; ++b)
+        slope.segment<3>(3 * (std::lower_bound(around.begin(), around.end(), nodes[b]) - around.begin())) +=
+            g.col(b);
+    }
+    for (int& b : around) b += offset;
+    use(around, slope, nodal.curvature[a]);
+  }
+}
+
+void Solid::add_tangent(const Points& x, BlockMatrix& out, int offset) const {
+  const NodalPressure nodal = nodal_pressures(x, offset);
+  constexpr int batch = 64;  // bounds the memory; the sums keep the order of the elements
+  std::vector<Eigen::MatrixXd> k(batch);
+  std::vector<int> slots;
+  for (int first = 0; first < elements(); first += batch) {
+    const int count = std::min(batch, elements() - first);
+    for_all(count, "element", first, [&](int i) { k[i] = element_tangent(x, offset, first + i, nodal); });
+    for (int i = 0; i < count; ++i) {
+      const auto nodes = mesh_.nodes_of(first + i);
+      slots.assign(nodes.begin(), nodes.end());
+      for (int& a : slots) a += offset;
+      out.add(slots, k[i]);
+    }
+  }
+  for_each_patch(x, offset, nodal,
+                 [&](const std::vector<int>& around, const Eigen::VectorXd& slope, double curvature) {
+                   const Eigen::MatrixXd patch = curvature * slope * slope.transpose();
+                   out.add(around, patch);
+                 });
+}
+
+void Solid::add_stiffness_bound(const Points& x, std::vector<double>& bound, int offset) const {
+  const NodalPressure nodal = nodal_pressures(x, offset);
+  std::vector<double> rows(mesh_.connectivity.size());
+  for_all(elements(), "element", 0, [&](int e) {
+    const Eigen::VectorXd sums = element_tangent(x, offset, e, nodal).cwiseAbs().rowwise().sum();
+    for (int a = 0; a < sums.size() / 3; ++a) rows[mesh_.offsets[e] + a] = sums.segment<3>(3 * a).maxCoeff();
+  });
+  for (std::size_t i = 0; i < rows.size(); ++i) bound[offset + mesh_.connectivity[i]] += rows[i];
+  for_each_patch(x, offset, nodal,
+                 [&](const std::vector<int>& around, const Eigen::VectorXd& slope, double curvature) {
+                   const double total = std::abs(curvature) * slope.cwiseAbs().sum();
+                   for (std::size_t b = 0; b < around.size(); ++b)
+                     bound[around[b]] +=
+                         total * slope.segment<3>(3 * static_cast<Eigen::Index>(b)).cwiseAbs().maxCoeff();
+                 });
+}
+
+std::vector<SolidPoint> Solid::points_of(const Points& x, int e, int offset,
+                                         const NodalPressure& nodal) const {
+  const Element& element = elements_[e];
+  const Deformed d = deform(x, offset, e, nodal);
+  std::vector<SolidPoint> points;
+  for (int q = 0; q < element.count; ++q) {
+    const Point& p = points_[element.first + q];
+    const ElasticResponse r = respond(e, d, q, Derivatives::stress);
+    SolidPoint s;
+    s.reference = p.reference;
+    s.volume_mm3 = p.weight;
+    s.deformation = d.f[q];
+    s.cauchy_Pa = materials::cauchy_stress(d.f[q], r.stress);
+    const Eigen::SelfAdjointEigenSolver<Mat3> principal(s.cauchy_Pa, Eigen::EigenvaluesOnly);
+    s.principal_Pa = principal.eigenvalues();
+    const Mat3 deviator = s.cauchy_Pa - s.cauchy_Pa.trace() / 3 * Mat3::Identity();
+    s.von_mises_Pa = std::sqrt(1.5) * deviator.norm();
+    s.volume_ratio = d.j[q];
+    const Eigen::SelfAdjointEigenSolver<Mat3> stretch(d.f[q].transpose() * d.f[q], Eigen::EigenvaluesOnly);
+    s.stretch = stretch.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    s.exponent = r.exponent;
+    s.energy_Pa = r.energy;
+    points.push_back(s);
+  }
+  return points;
+}
+
+std::vector<SolidPoint> Solid::points_of(const Points& x, int element, int offset) const {
+  return points_of(x, element, offset, nodal_pressures(x, offset));
+}
+
+std::vector<std::vector<SolidPoint>> Solid::all_points(const Points& x, int offset) const {
+  const NodalPressure nodal = nodal_pressures(x, offset);
+  std::vector<std::vector<SolidPoint>> all(elements());
+  for_all(elements(), "element", 0, [&](int e) { all[e] = points_of(x, e, offset, nodal); });
+  return all;
+}
+
+double SolidTerm::add_forces(const Configuration& now, Forces& out) const {
+  return solid_->add_forces(now.x, out.force, body_.offset);
+}
+
+void SolidTerm::add_stiffness_bound(const Configuration& now, StiffnessBound& out) const {
+  solid_->add_stiffness_bound(now.x, out.translation, body_.offset);
+}
+
+void SolidTerm::add_tangent(const Configuration& now, BlockMatrix& out) const {
+  solid_->add_tangent(now.x, out, body_.offset);
+}
+
+}  // namespace valsalva::structure
