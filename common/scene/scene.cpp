@@ -17,6 +17,14 @@ void declare_all(Schema& schema) {
   declare_fluid(schema);
   declare_circulation(schema);
   declare_cycle(schema);
+  declare_body(schema);
+  declare_nodes(schema);
+  declare_support(schema);
+  declare_load(schema);
+  declare_tie(schema);
+  declare_contact_pair(schema);
+  declare_dynamics(schema);
+  declare_probe(schema);
 }
 
 }  // namespace valsalva

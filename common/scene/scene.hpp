@@ -22,5 +22,13 @@ void declare_output(Schema& schema);
 void declare_fluid(Schema& schema);
 void declare_circulation(Schema& schema);
 void declare_cycle(Schema& schema);
+void declare_body(Schema& schema);
+void declare_nodes(Schema& schema);
+void declare_support(Schema& schema);
+void declare_load(Schema& schema);
+void declare_tie(Schema& schema);
+void declare_contact_pair(Schema& schema);
+void declare_dynamics(Schema& schema);
+void declare_probe(Schema& schema);
 
 }  // namespace valsalva

@@ -1,0 +1,49 @@
+// Meshes of simple shapes, mapped from regular grids. Every shape lives in a frame: origin, three orthonormal
+// axes e1, e2, e3. Sides of the grid become groups of nodes: "start1"/"end1" along the first direction of the
+// grid, and so on for 2 and 3 (in the order of `divisions`).
+//
+//   plate     origin + u e1 + v e2
+//   cylinder  radius (cos a e1 + sin a e2) + z e3         grid: azimuth, height
+//   sphere    radius (sin p (cos a e1 + sin a e2) + cos p e3)   grid: azimuth, polar angle; pole nodes merge
+//   line, arc e1; radius (cos a e1 + sin a e2)
+// Solids have a third grid direction: the box its third length, cylinder and sphere the wall outwards.
+// A closed azimuth (360 degrees) is sewn; triangles and solids are outward (plate: along e3).
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "assembly/mesh.hpp"
+
+namespace valsalva::assembly {
+
+struct Frame {
+  Vec3 origin = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();  ///< columns e1, e2, e3
+  Vec3 at(const Vec3& local) const { return origin + axes * local; }
+};
+
+/// Gram-Schmidt. InputError with `what` when a direction is zero or they are parallel.
+Frame frame_of(const Vec3& origin, const Vec3& first, const Vec3& second, const std::string& what);
+
+/// From [0, 1]^3 to space; a sheet has third coordinate 0, a curve also the second.
+using Map = std::function<Vec3(const Vec3&)>;
+
+Map plate_map(const Frame& frame, const Vec3& size, double twist_deg);
+/// wall 0: a sheet.
+Map cylinder_map(const Frame& frame, double radius, std::array<double, 2> angle_deg, double height,
+                 double wall);
+Map sphere_map(const Frame& frame, double radius, std::array<double, 2> angle_deg,
+               std::array<double, 2> polar_deg, double wall);
+
+/// Element sizes along each direction of the grid in geometric progression: the last over the first is the
+/// ratio (in the limit of many elements); 1: even.
+Map graded(Map map, const Vec3& ratio);
+
+enum class Pattern { alternating, right, left, crossed };
+
+BodyMesh curve(const Map& map, int divisions);
+BodyMesh sheet(const Map& map, std::array<int, 2> divisions, Pattern pattern);
+BodyMesh block(const Map& map, std::array<int, 3> divisions, structure::Shape shape);
+
+}  // namespace valsalva::assembly

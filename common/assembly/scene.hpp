@@ -1,0 +1,38 @@
+// A scene without fluid, composed from a case file: bodies, supports, loads, ties, contact, probes.
+// docs/scenes.md describes the tables.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "assembly/body.hpp"
+#include "assembly/rigid_surface.hpp"
+#include "assembly/supports.hpp"
+#include "contact/body_contact.hpp"
+#include "core/case.hpp"
+
+namespace valsalva::assembly {
+
+struct Scene {
+  std::unique_ptr<structure::System> system;  ///< at its start: the reference shapes
+  std::vector<BuiltBody> bodies;
+  std::map<std::string, std::vector<int>> nodes;  ///< sets, as nodes of the system
+  std::vector<Support> supports;
+  std::vector<std::shared_ptr<structure::ForceTerm>> terms;
+  std::vector<std::shared_ptr<structure::ForceTerm>> loads;          ///< those of the terms that are loads
+  std::vector<std::shared_ptr<contact::BodyContact>> body_contacts;  ///< those that need the step guard
+  std::map<std::string, std::shared_ptr<structure::ForceTerm>>
+      named;                                      ///< bodies, ties, tethers, contact pairs
+  std::map<std::string, std::string> first_body;  ///< of a contact pair
+  double end_s = 1;
+
+  const BuiltBody& body(const std::string& name, const std::string& what) const;
+  const std::vector<int>& set(const std::string& name, const std::string& what) const;
+};
+
+/// InputError that names the file, the entry, the key, what was found and what is expected.
+Scene compose(const Case& scene);
+
+}  // namespace valsalva::assembly
