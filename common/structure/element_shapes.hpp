@@ -3,7 +3,8 @@
 // Tetrahedra: coordinates r, s, t >= 0, r + s + t <= 1; hexahedra and quadrilaterals: -1 to 1.
 //
 // Rules:
-//   stiffness   tet4 1 point, tet10 4 (exact for the quadratic strain energy of straight elements), hex8
+//   stiffness   tet4 1 point, tet10 4 (exact for the quadratic strain energy of straight elements; curved
+//   ones pass the patch test only with the rich rule), hex8
 //               2x2x2, hex27 3x3x3, tri3 1, tri6 6, quad4 2x2, quad9 3x3
 //   rich        tet4 4, tet10 14 points (degree 5, positive; Walkington 2000); the others as above. The mixed
 //               tet10 needs it: with 4 points, 5 distortional strains each and one pressure, the element has

@@ -1,0 +1,269 @@
+#include "solve/linear_solver.hpp"
+
+#include <petscksp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace valsalva::solve {
+
+using structure::BlockMatrix;
+
+namespace {
+
+void require(PetscErrorCode code, const char* what) {
+  if (code != 0) throw EnvironmentError("PETSc: {} failed with code {}", what, static_cast<int>(code));
+}
+
+// PETSc for the whole program; MPI too, unless the program has started it.
+class Library {
+ public:
+  Library() {
+    PetscBool running = PETSC_FALSE;
+    PetscInitialized(&running);
+    if (running) return;
+    require(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"), "options");
+    require(PetscInitializeNoArguments(), "start");
+    require(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr), "error handler");
+    owner_ = true;
+  }
+  ~Library() {
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (owner_ && !ended) PetscFinalize();
+  }
+
+ private:
+  bool owner_ = false;
+};
+
+void start_library() {
+  static const Library library;
+}
+
+bool is_symmetric(const BlockMatrix& k, const std::vector<std::uint8_t>& fixed) {
+  double largest = 0, difference = 0;
+  for (int i = 0; i < k.slots(); ++i) {
+    const BlockMatrix::Row& row = k.row(i);
+    for (std::size_t n = 0; n < row.columns.size(); ++n) {
+      const int j = row.columns[n];
+      const BlockMatrix::Row& other = k.row(j);
+      const auto at = std::lower_bound(other.columns.begin(), other.columns.end(), i);
+      const bool present = at != other.columns.end() && *at == i;
+      const Mat3 mirror =
+          present ? Mat3(other.blocks[at - other.columns.begin()].transpose()) : Mat3(Mat3::Zero());
+      for (int c = 0; c < 3; ++c)
+        for (int d = 0; d < 3; ++d) {
+          if (fixed[3 * i + c] || fixed[3 * j + d]) continue;
+          largest = std::max(largest, std::abs(row.blocks[n](c, d)));
+          difference = std::max(difference, std::abs(row.blocks[n](c, d) - mirror(c, d)));
+        }
+    }
+  }
+  return difference <= 1e-8 * largest;
+}
+
+}  // namespace
+
+struct LinearSolver::Petsc {
+  Mat matrix = nullptr;
+  KSP solver = nullptr;
+  Vec right = nullptr, left = nullptr;
+  std::vector<PetscInt> rows, columns;
+  std::vector<PetscScalar> values;
+  long version = -1;
+  const BlockMatrix* source = nullptr;
+  bool symmetric = false, direct = false;
+
+  ~Petsc() { release(); }
+  void release() {
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (!ended) {
+      KSPDestroy(&solver);
+      MatDestroy(&matrix);
+      VecDestroy(&right);
+      VecDestroy(&left);
+    }
+    solver = nullptr;
+    matrix = nullptr;
+    right = left = nullptr;
+  }
+
+  void fill(const BlockMatrix& k, const std::vector<std::uint8_t>& fixed, const Eigen::VectorXd& rhs,
+            const Eigen::VectorXd& u, Eigen::VectorXd& b);
+  void create(const Points& positions, const LinearSettings& settings);
+  // False when it did not converge.
+  bool run(const Eigen::VectorXd& b, Eigen::VectorXd& u, LinearReport& report);
+};
+
+void LinearSolver::Petsc::fill(const BlockMatrix& k, const std::vector<std::uint8_t>& fixed,
+                               const Eigen::VectorXd& rhs, const Eigen::VectorXd& u, Eigen::VectorXd& b) {
+  const int n = 3 * k.slots();
+  rows.assign(1, 0);
+  rows.reserve(n + 1);
+  columns.clear();
+  values.clear();
+  b = rhs;
+  double diagonal = 0;
+  int free_rows = 0;
+  for (int i = 0; i < k.slots(); ++i) {
+    const BlockMatrix::Row& row = k.row(i);
+    const auto own = std::lower_bound(row.columns.begin(), row.columns.end(), i) - row.columns.begin();
+    for (int c = 0; c < 3; ++c)
+      if (!fixed[3 * i + c]) diagonal += std::abs(row.blocks[own](c, c)), ++free_rows;
+  }
+  diagonal = free_rows > 0 && diagonal > 0 ? diagonal / free_rows : 1;
+  for (int i = 0; i < k.slots(); ++i) {
+    const BlockMatrix::Row& row = k.row(i);
+    for (int c = 0; c < 3; ++c) {
+      const int at = 3 * i + c;
+      if (fixed[at]) b[at] = diagonal * u[at];
+      for (std::size_t m = 0; m < row.columns.size(); ++m)
+        for (int d = 0; d < 3; ++d) {
+          const int column = 3 * row.columns[m] + d;
+          double value = row.blocks[m](c, d);
+          if (fixed[at]) {
+            value = column == at ? diagonal : 0;
+          } else if (fixed[column]) {
+            b[at] -= value * u[column];
+            value = 0;
+          }
+          columns.push_back(column);
+          values.push_back(value);
+        }
+      rows.push_back(static_cast<PetscInt>(columns.size()));
+    }
+  }
+}
+
+void LinearSolver::Petsc::create(const Points& positions, const LinearSettings& settings) {
+  const PetscInt n = static_cast<PetscInt>(rows.size()) - 1;
+  require(
+      MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, rows.data(), columns.data(), values.data(), &matrix),
+      "matrix");
+  require(MatSetOption(matrix, MAT_SYMMETRIC, symmetric ? PETSC_TRUE : PETSC_FALSE), "matrix option");
+  require(MatCreateVecs(matrix, &right, &left), "vectors");
+  require(KSPCreate(PETSC_COMM_SELF, &solver), "solver");
+  require(KSPSetOperators(solver, matrix, matrix), "operators");
+  PC pc = nullptr;
+  require(KSPGetPC(solver, &pc), "preconditioner");
+  if (direct) {
+    require(KSPSetType(solver, KSPPREONLY), "solver type");
+    require(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU), "factorisation");
+    require(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS), "MUMPS");
+    require(PCFactorSetUpMatSolverType(pc), "MUMPS");
+    Mat factor = nullptr;
+    require(PCFactorGetMatrix(pc, &factor), "MUMPS");
+    require(MatMumpsSetIcntl(factor, 14, 60), "MUMPS workspace");   // per cent more than estimated
+    require(MatMumpsSetIcntl(factor, 24, 0), "MUMPS null pivots");  // a singular matrix is an error
+    return;
+  }
+  require(MatSetBlockSize(matrix, 3), "block size");
+  if (static_cast<PetscInt>(3 * positions.size()) == n) {
+    Vec at = nullptr;
+    MatNullSpace rigid = nullptr;
+    require(VecCreateSeq(PETSC_COMM_SELF, n, &at), "positions");
+    require(VecSetBlockSize(at, 3), "positions");
+    PetscScalar* raw = nullptr;
+    require(VecGetArray(at, &raw), "positions");
+    for (std::size_t a = 0; a < positions.size(); ++a)
+      for (int d = 0; d < 3; ++d) raw[3 * a + d] = positions[a][d];
+    require(VecRestoreArray(at, &raw), "positions");
+    require(MatNullSpaceCreateRigidBody(at, &rigid), "rigid motions");
+    require(MatSetNearNullSpace(matrix, rigid), "rigid motions");
+    require(MatNullSpaceDestroy(&rigid), "rigid motions");
+    require(VecDestroy(&at), "positions");
+  }
+  require(KSPSetType(solver, symmetric ? KSPCG : KSPGMRES), "solver type");
+  require(PCSetType(pc, PCGAMG), "multigrid");
+  require(KSPSetTolerances(solver, settings.tolerance, PETSC_DEFAULT, PETSC_DEFAULT, settings.max_iterations),
+          "tolerances");
+}
+
+bool LinearSolver::Petsc::run(const Eigen::VectorXd& b, Eigen::VectorXd& u, LinearReport& report) {
+  PetscScalar* raw = nullptr;
+  require(VecGetArray(right, &raw), "right-hand side");
+  std::copy(b.data(), b.data() + b.size(), raw);
+  require(VecRestoreArray(right, &raw), "right-hand side");
+  require(VecSet(left, 0), "solution");
+  if (KSPSolve(solver, right, left) != 0) return false;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  require(KSPGetConvergedReason(solver, &reason), "reason");
+  if (reason < 0) return false;
+  PetscInt iterations = 0;
+  require(KSPGetIterationNumber(solver, &iterations), "iterations");
+  if (direct && symmetric) {
+    PC pc = nullptr;
+    Mat factor = nullptr;
+    PetscInt negative = 0, zero = 0, positive = 0;
+    require(KSPGetPC(solver, &pc), "factor");
+    require(PCFactorGetMatrix(pc, &factor), "factor");
+    require(MatGetInertia(factor, &negative, &zero, &positive), "inertia");
+    report.negative_pivots = static_cast<int>(negative);
+    if (zero > 0) return false;
+  }
+  const PetscScalar* found = nullptr;
+  require(VecGetArrayRead(left, &found), "solution");
+  u = Eigen::Map<const Eigen::VectorXd>(found, b.size());
+  require(VecRestoreArrayRead(left, &found), "solution");
+  report.iterations = direct ? 0 : static_cast<int>(iterations);
+  return u.allFinite();
+}
+
+LinearSolver::LinearSolver(const LinearSettings& settings)
+    : settings_(settings), petsc_(std::make_unique<Petsc>()) {
+  if (!(settings_.tolerance > 0) || settings_.max_iterations < 1)
+    throw InputError("linear solver: tolerance {}, at most {} iterations; expected positive ones",
+                     settings_.tolerance, settings_.max_iterations);
+}
+
+LinearSolver::~LinearSolver() = default;
+
+LinearReport LinearSolver::solve(const BlockMatrix& k, const std::vector<std::uint8_t>& fixed,
+                                 const Eigen::VectorXd& rhs, Eigen::VectorXd& u, const Points& positions) {
+  start_library();
+  VALSALVA_ASSERT(rhs.size() == 3 * k.slots() && u.size() == rhs.size() &&
+                  static_cast<Eigen::Index>(fixed.size()) == rhs.size());
+  Petsc& p = *petsc_;
+  LinearReport report;
+  report.symmetric = is_symmetric(k, fixed);
+  const auto attempt = [&](bool direct) {
+    bool same = p.solver && p.source == &k && p.version == k.pattern_version() &&
+                p.symmetric == report.symmetric && p.direct == direct;
+    const PetscScalar* storage = p.values.data();
+    const std::size_t entries = p.values.size();
+    Eigen::VectorXd b;
+    p.fill(k, fixed, rhs, u, b);
+    same = same && storage == p.values.data() && entries == p.values.size();  // PETSc uses our arrays
+    if (!same) p.release();
+    p.symmetric = report.symmetric;
+    p.direct = direct;
+    if (!same) {
+      p.create(positions, settings_);
+      p.source = &k;
+      p.version = k.pattern_version();
+    } else {
+      require(MatAssemblyBegin(p.matrix, MAT_FINAL_ASSEMBLY), "assembly");
+      require(MatAssemblyEnd(p.matrix, MAT_FINAL_ASSEMBLY), "assembly");
+    }
+    report.direct = direct;
+    return p.run(b, u, report);
+  };
+  const bool multigrid = settings_.method == LinearMethod::multigrid ||
+                         (settings_.method == LinearMethod::automatic && rhs.size() > settings_.direct_up_to);
+  const Eigen::VectorXd given = u;
+  if (multigrid) {
+    if (attempt(false)) return report;
+    u = given;
+  }
+  if (attempt(true)) return report;
+  p.release();
+  throw NumericalFailure(
+      "linear solver: the stiffness matrix is singular: a body can move freely, or the state is unstable; "
+      "check the supports");
+}
+
+}  // namespace valsalva::solve
