@@ -1,8 +1,9 @@
 // Where the crimped device goes: turned about its axis, the skirt's edge at the commanded depth.
 //
 // The frame shortens while it expands. The depth is commanded for the final skirt edge, so the delivery
-// system holds that height while the frame opens (loads.hpp), and its outflow comes down. Where a straight path would touch the wall, the axis is tilted about the annulus's centre
-// towards the lumen's centre at the device's upper end, by as little as clears it.
+// system holds that height while the frame opens (loads.hpp), and its outflow comes down. Where a straight
+// path would touch the wall, the axis is tilted about the annulus's centre towards the lumen's centre at the
+// device's upper end, by as little as clears it.
 #pragma once
 
 #include <Eigen/Geometry>
