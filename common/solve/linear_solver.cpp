@@ -158,7 +158,7 @@ void LinearSolver::Petsc::create(const Points& positions, const LinearSettings& 
     Mat factor = nullptr;
     require(PCFactorGetMatrix(pc, &factor), "MUMPS");
     require(MatMumpsSetIcntl(factor, 14, 60), "MUMPS workspace");   // per cent more than estimated
-    require(MatMumpsSetIcntl(factor, 24, 0), "MUMPS null pivots");  // a singular matrix is an error
+    require(MatMumpsSetIcntl(factor, 24, 1), "MUMPS null pivots");  // counts them: a singular matrix
     return;
   }
   require(MatSetBlockSize(matrix, 3), "block size");
@@ -195,15 +195,16 @@ bool LinearSolver::Petsc::run(const Eigen::VectorXd& b, Eigen::VectorXd& u, Line
   if (reason < 0) return false;
   PetscInt iterations = 0;
   require(KSPGetIterationNumber(solver, &iterations), "iterations");
-  if (direct && symmetric) {
+  if (direct) {
     PC pc = nullptr;
     Mat factor = nullptr;
-    PetscInt negative = 0, zero = 0, positive = 0;
+    PetscInt negative = 0, null = 0;
     require(KSPGetPC(solver, &pc), "factor");
     require(PCFactorGetMatrix(pc, &factor), "factor");
-    require(MatGetInertia(factor, &negative, &zero, &positive), "inertia");
-    report.negative_pivots = static_cast<int>(negative);
-    if (zero > 0) return false;
+    require(MatMumpsGetInfog(factor, 12, &negative), "negative pivots");
+    require(MatMumpsGetInfog(factor, 28, &null), "null pivots");
+    report.negative_pivots = symmetric ? static_cast<int>(negative) : 0;
+    if (null > 0) return false;
   }
   const PetscScalar* found = nullptr;
   require(VecGetArrayRead(left, &found), "solution");
