@@ -1,5 +1,5 @@
 // A scene without fluid, composed from a case file: bodies, supports, loads, ties, contact, probes.
-// docs/scenes.md describes the tables.
+// docs/case-file.md lists the tables.
 #pragma once
 
 #include <map>
