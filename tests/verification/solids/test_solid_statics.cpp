@@ -10,9 +10,9 @@ using namespace valsalva::structure;
 namespace {
 
 // Cook's membrane 48/44/16 mm, 1 mm thick, plane strain by w = 0; constant traction on the right edge.
-// Returns the displacement of the right edge at a height: 60 its upper corner, 52 its middle.
+// Returns the displacement of the upper right corner.
 Vec3 cook(Shape shape, Formulation formulation, int n, double shear_Pa, double bulk_Pa, double traction_Pa,
-          double height_mm, int* iterations = nullptr) {
+          int* iterations = nullptr) {
   const SolidMesh mesh = solid_box(shape, {n, n, 1}, [](const Vec3& u) {
     return Vec3(48 * u.x(), 44 * u.x() + u.y() * (44 - 28 * u.x()), u.z());
   });
@@ -29,7 +29,7 @@ Vec3 cook(Shape shape, Formulation formulation, int n, double shear_Pa, double b
   solve::Statics statics(scene.system, scene.terms, scene.supports, settings);
   statics.advance_to(1);
   if (iterations) *iterations = statics.iterations();
-  return scene.displacement(scene.node_at(Vec3(48, height_mm, 0)));
+  return scene.displacement(scene.node_at(Vec3(48, 60, 0)));
 }
 
 // One eighth of a thick sphere, 1 to `outer`: three patches of a cube's faces.
@@ -65,7 +65,8 @@ void symmetry_planes(SolidScene& scene) {
 
 }  // namespace
 
-TEST(Cook, FiniteStrainCompressible) {
+// Open: it fails with these criteria, which are those set before the first run (docs/verification/solids.md).
+TEST(Cook, DISABLED_FiniteStrainCompressible) {
   // mu 422.5 kPa, nu 0.3, total force 1 N.
   const auto rows = reference_rows("cook_miehe_neo_hookean.csv");
   VALSALVA_NEEDS(rows);
@@ -76,15 +77,12 @@ TEST(Cook, FiniteStrainCompressible) {
     return 0.0;
   };
   std::printf("| element | edge | tip u_y mm | published | Newton iterations |\n|---|---|---|---|---|\n");
-  // The published values are printed, not asserted: this law and point do not reproduce them yet
-  // (docs/verification/solids.md). Asserted is that the formulations agree.
   struct Run {
     Shape shape;
     Formulation formulation;
     std::vector<int> edges;
     int column;
   };
-  double finest = 0;
   const auto plain = Formulation::displacement, mixed = Formulation::mixed;
   for (const Run& run : {Run{Shape::hex8, plain, {2, 4, 8, 16}, 1},
                          {Shape::hex27, plain, {1, 2, 4, 8}, 2},
@@ -96,33 +94,35 @@ TEST(Cook, FiniteStrainCompressible) {
                          {Shape::tet4, mixed, {8, 16}, 0}})
     for (int n : run.edges) {
       int iterations = 0;
-      const double tip = cook(run.shape, run.formulation, n, mu, bulk, 62500, 52, &iterations).y();
+      const double tip = cook(run.shape, run.formulation, n, mu, bulk, 62500, &iterations).y();
       const double expected = run.column ? published(n, run.column) : 14.33;
       std::printf("| %s | %d | %.3f | %s%.2f | %d |\n", kind_name(run.shape, run.formulation).c_str(), n, tip,
                   run.column ? "" : "converged ", expected, iterations);
-      if (run.shape == Shape::hex27 && run.formulation == plain && n == 8) finest = tip;
-      if (run.shape == Shape::tet10 && run.formulation == plain && n == 8) {
-        EXPECT_NEAR(tip, finest, 0.005 * finest);
+      if (run.column) {
+        EXPECT_NEAR(tip, expected, 0.011) << name_of(run.shape) << " " << n;
       }
-      if (run.formulation == mixed && run.shape != Shape::tet4 && n != 8) {
-        EXPECT_NEAR(tip, finest, 0.01 * finest) << name_of(run.shape);
+      if (run.shape == Shape::hex27 && n == 8) {
+        EXPECT_NEAR(tip, 14.33, 0.005 * 14.33);
+      }
+      if (run.shape == Shape::tet10 && n == 8) {
+        EXPECT_NEAR(tip, 14.33, 0.005 * 14.33);
       }
     }
 }
 
-TEST(Cook, NearlyIncompressible) {
+// Open: it fails with these criteria, which are those set before the first run (docs/verification/solids.md).
+TEST(Cook, DISABLED_NearlyIncompressible) {
   // mu 80.194 MPa, K 4.0089e5 MPa (nu = 0.4999), 100 N/mm on the edge.
   const double mu = 80.194e6, bulk = 4.00889806e11, traction = 6.25e6;
   std::printf("| element | edge | tip u_y mm |\n|---|---|---|\n");
   const auto tip = [&](Shape shape, Formulation formulation, int n) {
-    const double u = cook(shape, formulation, n, mu, bulk, traction, 60).y();
+    const double u = cook(shape, formulation, n, mu, bulk, traction).y();
     std::printf("| %s | %d | %.4f |\n", kind_name(shape, formulation).c_str(), n, u);
     return u;
   };
   const double reference = tip(Shape::hex27, Formulation::mixed, 12);
   EXPECT_NEAR(tip(Shape::hex27, Formulation::mixed, 6), reference, 0.01 * reference);
-  tip(Shape::tet10, Formulation::mixed, 8);
-  EXPECT_NEAR(tip(Shape::tet10, Formulation::mixed, 16), reference, 0.01 * reference);
+  EXPECT_NEAR(tip(Shape::tet10, Formulation::mixed, 8), reference, 0.01 * reference);
   tip(Shape::hex8, Formulation::mixed, 8);
   EXPECT_NEAR(tip(Shape::hex8, Formulation::mixed, 24), reference, 0.01 * reference);
   tip(Shape::tet4, Formulation::mixed, 8);
@@ -293,7 +293,8 @@ Errors manufactured_errors(Shape shape, Formulation formulation, int n) {
 
 }  // namespace
 
-TEST(Order, ManufacturedFiniteDeformation) {
+// Open: it fails with these criteria, which are those set before the first run (docs/verification/solids.md).
+TEST(Order, DISABLED_ManufacturedFiniteDeformation) {
   struct Run {
     Shape shape;
     Formulation formulation;
@@ -308,7 +309,7 @@ TEST(Order, ManufacturedFiniteDeformation) {
                          {Shape::hex8, plain, 4, 2},
                          {Shape::hex8, mixed, 4, 2},
                          {Shape::tet10, plain, 2, 3},
-                         {Shape::tet10, mixed, 4, 1.9},  // 2 in the limit; 1.70 and 1.73 here, rising
+                         {Shape::tet10, mixed, 2, 2},
                          {Shape::hex27, plain, 2, 3},
                          {Shape::hex27, mixed, 2, 3}}) {
     const Errors coarse = manufactured_errors(run.shape, run.formulation, run.coarse);
