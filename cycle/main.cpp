@@ -1,5 +1,6 @@
 // valsalva-cycle: the valve beats. Blood on a staggered grid, the leaflets as immersed shells, the left heart
 // and the arteries as 0D models at the two ends. Parent: deploy, or mesher where the scene has no device.
+// A scene of [[body]] entries without [fluid] is advanced alone, without a parent (dry.hpp).
 //
 //   valsalva-cycle CASE.toml
 //   mpirun -np 2 valsalva-cycle CASE.toml --fidelity standard
@@ -14,6 +15,7 @@
 #include "core/progress.hpp"
 #include "core/stage.hpp"
 #include "core/units.hpp"
+#include "dry.hpp"
 #include "results.hpp"
 #include "scene/scene.hpp"
 #include "state/checkpoint.hpp"
@@ -48,6 +50,7 @@ void say_scene(const Inputs& in, const Parameters& p, const Simulation& simulati
 }
 
 void run(StageContext& context) {
+  if (is_dry(context.scene)) return run_dry(context);
   omp_set_num_threads(1);  // the ranks share the work; results do not depend on it
   const Parameters p = read_parameters(context.scene);
   const Inputs in = read_inputs(context.parent_state(p.device ? "deploy" : "mesher"), p);
@@ -82,6 +85,7 @@ void run(StageContext& context) {
 }
 
 Estimate estimate(const Case& scene, int ranks) {
+  if (is_dry(scene)) return estimate_dry(scene);
   const Parameters p = read_parameters(scene);
   // docs/cycle.md: mean step of a beat about 3e-5 h^1.4, one core 0.06 microseconds a cell and step, and
   // 4.6 ms for leaflets at h = 1 mm (their nodes are as 1 / h^2).
@@ -95,10 +99,13 @@ Estimate estimate(const Case& scene, int ranks) {
 }
 
 void check(const Case& scene) {
+  if (is_dry(scene)) return check_dry(scene);
   const Parameters p = read_parameters(scene);
   if (!scene.has("fluid"))
-    throw InputError("{}: cycle needs a [fluid] table (an empty one takes the defaults)",
-                     scene.file().string());
+    throw InputError(
+        "{}: cycle needs a [fluid] table (an empty one takes the defaults), or [[body]] entries for a scene "
+        "without fluid",
+        scene.file().string());
   if (p.end_s <= 0)
     throw InputError("{}: nothing to simulate: cycle.duration_s is {} s", scene.file().string(), p.end_s);
 }
@@ -111,7 +118,8 @@ int main(int argc, char** argv) {
                                "The valve beats: blood, leaflets, heart and arteries",
                                "mpirun -np 2 valsalva-cycle CASE.toml --fidelity standard",
                                valsalva::declare_all,
-                               {"cycle", "fluid", "circulation", "device", "native"},
+                               {"cycle", "fluid", "circulation", "device", "native", "body", "nodes",
+                                "support", "load", "tie", "contact_pair", "contact", "dynamics", "probe"},
                                run,
                                estimate,
                                check});

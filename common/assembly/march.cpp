@@ -68,7 +68,7 @@ class Explicit : public March {
     structure::IntegratorSettings in;
     in.step_s = step_;
     in.mass_scaling = s.mass_scaling;
-    in.safety = s.step_s > 0 ? 1 : s.safety;
+    in.safety = s.mass_scaling ? s.safety : 1;  // what is refused is a step beyond the limit itself
     in.scaling_interval = 20;
     in.damping_per_s = s.damping;
     in.speed_limit_mm_per_s = s.speed_limit;
