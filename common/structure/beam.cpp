@@ -75,7 +75,9 @@ BeamNetwork::Angles BeamNetwork::angles_of(const Sines& s) {
 BeamNetwork::BeamNetwork(BeamMesh mesh, const BeamMaterial& material) : mesh_(std::move(mesh)) {
   const std::size_t count = mesh_.elements.size();
   VALSALVA_ASSERT(mesh_.width_mm.size() == count && mesh_.depth_mm.size() == count &&
-                  mesh_.depth_axis.size() == count);
+                  mesh_.depth_axis.size() == count &&
+                  (mesh_.torsion_mm4.empty() || mesh_.torsion_mm4.size() == count) &&
+                  (mesh_.shear_area_mm2.empty() || mesh_.shear_area_mm2.size() == count));
   if (!(material.young_Pa > 0) || !(material.density_g_per_mm3 > 0) || !(material.poisson > -1) ||
       !(material.poisson <= 0.5))
     throw InputError(
@@ -108,7 +110,21 @@ BeamNetwork::BeamNetwork(BeamMesh mesh, const BeamMaterial& material) : mesh_(st
     element.axial = material.young_Pa * width * depth / element.length;
     element.bend_z = material.young_Pa * depth * width * width * width / 12 / element.length;
     element.bend_y = material.young_Pa * width * depth * depth * depth / 12 / element.length;
-    element.torsion = shear * torsion_constant(width, depth) / element.length;
+    const double torsion = mesh_.torsion_mm4.empty() ? torsion_constant(width, depth) : mesh_.torsion_mm4[i];
+    if (!(torsion > 0) || !std::isfinite(torsion))
+      throw InputError("beams: torsion constant of element {} is {} mm4; expected positive", i, torsion);
+    element.torsion = shear * torsion / element.length;
+    if (!mesh_.shear_area_mm2.empty()) {
+      const double area = mesh_.shear_area_mm2[i];
+      if (!(area > 0))
+        throw InputError("beams: shear area of element {} is {} mm2; expected positive", i, area);
+      const auto slopes = [&](double bend) {
+        const double phi = 12 * bend / (shear * area * element.length);
+        return Slopes{(4 + phi) / (1 + phi), (2 - phi) / (1 + phi)};
+      };
+      element.slopes_z = slopes(element.bend_z);
+      element.slopes_y = slopes(element.bend_y);
+    }
     element.mass = material.density_g_per_mm3 * width * depth * element.length;
     element.rest = angles_of(sines(mesh_.reference, identity, static_cast<int>(i), 0, 0));
     total_length += element.length;
@@ -156,13 +172,16 @@ double BeamNetwork::element_forces(const Sines& s, int i, Ends& out) const {
   const double az = now.az - k.rest.az, bz = now.bz - k.rest.bz;
   const double ay = now.ay - k.rest.ay, by = now.by - k.rest.by;
   const double twist = now.twist - k.rest.twist;
-  const double energy = 0.5 * k.axial * stretch * stretch + 2 * k.bend_z * (az * az + az * bz + bz * bz) +
-                        2 * k.bend_y * (ay * ay + ay * by + by * by) + 0.5 * k.torsion * twist * twist;
+  // End moments, and with them the energy.
+  const double maz = k.bend_z * (k.slopes_z.near * az + k.slopes_z.far * bz);
+  const double mbz = k.bend_z * (k.slopes_z.near * bz + k.slopes_z.far * az);
+  const double may = k.bend_y * (k.slopes_y.near * ay + k.slopes_y.far * by);
+  const double mby = k.bend_y * (k.slopes_y.near * by + k.slopes_y.far * ay);
+  const double energy = 0.5 * (k.axial * stretch * stretch + maz * az + mbz * bz + may * ay + mby * by +
+                               k.torsion * twist * twist);
   // Derivatives of the energy with respect to the sines.
-  const double daz = 2 * k.bend_z * (2 * az + bz) * arcsine_slope(s.az);
-  const double dbz = 2 * k.bend_z * (2 * bz + az) * arcsine_slope(s.bz);
-  const double day = 2 * k.bend_y * (2 * ay + by) * arcsine_slope(s.ay);
-  const double dby = 2 * k.bend_y * (2 * by + ay) * arcsine_slope(s.by);
+  const double daz = maz * arcsine_slope(s.az), dbz = mbz * arcsine_slope(s.bz);
+  const double day = may * arcsine_slope(s.ay), dby = mby * arcsine_slope(s.by);
   const double dtwist = k.torsion * twist * arcsine_slope(s.twist);
   // dU/dp, without the part along p, divided by l: dU/dx_b.
   const Vec3 dp = -daz * s.a.col(1) + day * s.a.col(2) - dbz * s.b.col(1) + dby * s.b.col(2);
@@ -234,11 +253,13 @@ BeamState BeamNetwork::element_state(const Points& x, const std::vector<Eigen::Q
   const Angles now = angles_of(sines(x, rotation, i, offset, rotation_offset));
   const double az = now.az - k.rest.az, bz = now.bz - k.rest.bz;
   const double ay = now.ay - k.rest.ay, by = now.by - k.rest.by;
-  // End curvatures of a cubic: (4 theta_a + 2 theta_b)/L.
-  const auto curvature = [&](double near, double far) { return std::abs(4 * near + 2 * far) / k.length; };
+  const auto curvature = [&](const Slopes& m, double near, double far) {  // M_a / EI
+    return std::abs(m.near * near + m.far * far) / k.length;
+  };
   const double width = 0.5 * mesh_.width_mm[i], depth = 0.5 * mesh_.depth_mm[i];
-  const double bending = std::max(curvature(az, bz) * width + curvature(ay, by) * depth,
-                                  curvature(bz, az) * width + curvature(by, ay) * depth);
+  const double bending =
+      std::max(curvature(k.slopes_z, az, bz) * width + curvature(k.slopes_y, ay, by) * depth,
+               curvature(k.slopes_z, bz, az) * width + curvature(k.slopes_y, by, ay) * depth);
   const double axial = (now.length - k.rest.length) / k.length;
   return {axial, std::abs(axial) + bending};
 }

@@ -4,16 +4,17 @@
 // - x_a)/l and the nodal triads t_i = R E_i (E_1 along the reference chord, E_2 along the section's width,
 // E_3 its depth),
 //   theta_z = -asin(p . t_2),  theta_y = asin(p . t_3) at each end,  phi = asin((t^a_3 . t^b_2 - t^a_2 .
-//   t^b_3)/2), U = EA/(2L) (l - L)^2 + sum_{z,y} 2 EI/L (theta_a^2 + theta_a theta_b + theta_b^2) + GJ/(2L)
-//   phi^2,
-// each angle minus its value in the reference. Exact under rigid motion; small strain; end rotations below 90
-// degrees to the chord, twist below 90 degrees an element. Forces and moments are the exact gradient. A beam
-// in its reference shape with identity rotations has exactly zero force. After Crisfield 1990 (A consistent
-// corotational formulation for nonlinear 3D beam elements), sections 2 and 3.
+//   t^b_3)/2), U = EA/(2L) (l - L)^2 + sum_{z,y} EI/(2L (1 + Phi)) [(4 + Phi)(theta_a^2 + theta_b^2) +
+//   (4 - 2 Phi) theta_a theta_b] + GJ/(2L) phi^2,  Phi = 12 EI/(G A_s L^2),
+// each angle minus its value in the reference; Phi = 0 without shear flexibility (Timoshenko's beam:
+// Przemieniecki 1968, Theory of Matrix Structural Analysis, section 5.6). Exact under rigid motion; small
+// strain; end rotations below 90 degrees to the chord, twist below 90 degrees an element. Forces and moments
+// are the exact gradient. A beam in its reference shape with identity rotations has exactly zero force. After
+// Crisfield 1990 (A consistent corotational formulation for nonlinear 3D beam elements), sections 2 and 3.
 //
 // Section: width b along E_2 (circumferential), depth d along E_3 (radial):
 //   I_z = d b^3/12 (bending along the width), I_y = b d^3/12, J = b d^3 (1/3 - 0.21 d/b (1 - d^4/(12 b^4))),
-//   b >= d.
+//   b >= d (J of the formula, unless the mesh gives it).
 // Lengths mm, moduli Pa, forces uN, moments uN mm, energy nJ.
 #pragma once
 
@@ -32,6 +33,12 @@ struct BeamMesh {
   std::vector<double> depth_mm;  ///< per element
   std::vector<Vec3> depth_axis;  ///< per element: the direction of the depth in the reference; any that is
                                  ///< not parallel to the element
+  /// Empty, or one an element: J in place of the rectangle's. A published "J" may be the polar moment
+  /// b d (b^2 + d^2)/12, which for a square is 1.19 times the true one.
+  std::vector<double> torsion_mm4 = {};
+  /// Empty (no shear flexibility), or one an element: A_s, for shear along the width and along the depth
+  /// alike; 5/6 of a rectangle's area.
+  std::vector<double> shear_area_mm2 = {};
 };
 
 struct BeamMaterial {
@@ -79,10 +86,14 @@ class BeamNetwork {
     double length;
     double az, ay, bz, by, twist;
   };
+  struct Slopes {  // M_a = bend (near theta_a + far theta_b)
+    double near = 4, far = 2;
+  };
   struct Element {
     double length;
     Mat3 axes;                              // columns E_1, E_2, E_3
     double axial, bend_z, bend_y, torsion;  // EA/L, EI_z/L, EI_y/L, GJ/L
+    Slopes slopes_z, slopes_y;
     Angles rest;
     double mass;
   };

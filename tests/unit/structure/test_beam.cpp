@@ -176,6 +176,40 @@ TEST(Beam, SectionConstants) {
   EXPECT_NEAR(torsion_constant(1, 10), 0.312 * 10, 0.02);  // thin: 0.312 b d^3, either order
 }
 
+TEST(Beam, GivenTorsionConstantReplacesTheRectangles) {
+  BeamMesh mesh = straight(2, 1, 0.4, 0.2, 2e5, 0.25).mesh();
+  mesh.torsion_mm4 = {0.0123};
+  const BeamNetwork beams(mesh, {2e5, 0.25, 1e-3});
+  Rotations twisted{Eigen::Quaterniond::Identity(),
+                    Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Vec3::UnitX()))};
+  EXPECT_NEAR(respond(beams, mesh.reference, twisted).moment[0].x(), 8e4 * 0.0123 * 0.1 / 2, 1e-9);
+  mesh.torsion_mm4 = {0};
+  EXPECT_THROW(BeamNetwork(mesh, {2e5, 0.25, 1e-3}), InputError);
+}
+
+TEST(Beam, ShearAreaGivesTimoshenkosDeflection) {
+  // One element, small tip load P: w = P L^3/(3 EI) + P L/(G A_s), the tip's slope P L^2/(2 EI).
+  const double length = 2, young = 2e5, nu = 0.25, width = 0.4, depth = 0.5;
+  BeamMesh mesh = straight(length, 1, width, depth, young, nu).mesh();
+  mesh.shear_area_mm2 = {5.0 / 6 * width * depth};
+  const BeamNetwork beams(mesh, {young, nu, 1e-3});
+  const double inertia = width * std::pow(depth, 3) / 12, shear = young / (2 * (1 + nu));
+  const double load = 1e-4;
+  const double w =
+      load * std::pow(length, 3) / (3 * young * inertia) + load * length / (shear * mesh.shear_area_mm2[0]);
+  const double slope = load * length * length / (2 * young * inertia);
+  const Points x{mesh.reference[0], mesh.reference[1] + Vec3(0, 0, w)};
+  const Response r =
+      respond(beams, x,
+              {Eigen::Quaterniond::Identity(), Eigen::Quaterniond(Eigen::AngleAxisd(-slope, Vec3::UnitY()))});
+  EXPECT_NEAR(-r.force[1].z(), load, 1e-4 * load);
+  EXPECT_NEAR(r.moment[1].norm(), 0, 1e-4 * load * length);
+  mesh.shear_area_mm2 = {1e30};  // rigid in shear: the same as none, to the last digits
+  const Rotations turn = turned(2, 0.1, 7);
+  const double stiff = respond({mesh, {young, nu, 1e-3}}, x, turn).energy;
+  EXPECT_NEAR(stiff, respond(straight(length, 1, width, depth, young, nu), x, turn).energy, 1e-12 * stiff);
+}
+
 TEST(Beam, StiffnessBoundCoversTheLargestEigenvalue) {
   const BeamNetwork beams = network();
   const int n = beams.nodes();
