@@ -5,43 +5,17 @@
 #include <map>
 #include <set>
 
+#include "bodies/level_set.hpp"
+#include "bodies/shell.hpp"
 #include "core/errors.hpp"
 
 namespace valsalva::cycle {
 
 namespace {
 
-const state::Array& field(const std::map<std::string, state::Array>& data, const std::string& name,
-                          const std::string& mesh, const state::State& file) {
-  const auto found = data.find(name);
-  if (found == data.end())
-    throw InputError("{}: the mesh '{}' has no data '{}'; run the stage '{}' again", file.source, mesh, name,
-                     file.stage);
-  return found->second;
-}
-
 std::vector<double> real_values(const state::Array& array) {
   return std::visit([](const auto& data) { return std::vector<double>(data.begin(), data.end()); },
                     array.data);
-}
-
-geometry::GridSdf read_lumen(const state::State& file) {
-  const state::Array& values = file.array("levelset/lumen");
-  if (values.shape.size() != 3)
-    throw InputError("{}: 'levelset/lumen' has {} dimensions; expected 3 (nz, ny, nx)", file.source,
-                     values.shape.size());
-  geometry::GridSdf lumen;
-  for (int d = 0; d < 3; ++d) lumen.dimensions[d] = static_cast<int>(values.shape[2 - d]);
-  lumen.values = values.floats("levelset/lumen");
-  const std::vector<double>& origin = file.array("levelset/origin_mm").doubles("levelset/origin_mm");
-  if (origin.size() != 3)
-    throw InputError("{}: 'levelset/origin_mm' has {} entries; expected 3", file.source, origin.size());
-  lumen.origin = Vec3(origin[0], origin[1], origin[2]);
-  lumen.spacing = file.array("levelset/spacing_mm").number("levelset/spacing_mm");
-  if (!(lumen.spacing > 0))
-    throw InputError("{}: 'levelset/spacing_mm' is {}; expected a positive number", file.source,
-                     lumen.spacing);
-  return lumen;
 }
 
 // Edges that belong to one triangle only.
@@ -86,21 +60,10 @@ Leaflets read_leaflets(const state::State& file, const std::string& name, double
   l.points = mesh.points;
   l.rest =
       mesh.point_data.count("mounted") ? mesh.point_data.at("mounted").points(name + "/mounted") : l.points;
-  l.mesh.triangles = mesh.triangles(name);
-  l.mesh.reference = field(mesh.point_data, "reference", name, file).points(name + "/reference");
-  l.mesh.thickness_mm = field(mesh.point_data, "thickness_mm", name, file).doubles(name + "/thickness_mm");
-  l.mesh.fibre1 = field(mesh.cell_data, "fibre1", name, file).points(name + "/fibre1");
-  l.mesh.fibre2 = field(mesh.cell_data, "fibre2", name, file).points(name + "/fibre2");
-  l.mesh.stiffness_factor.assign(l.mesh.triangles.size(), factor);
-  if (mesh.cell_data.count("stiffness_factor")) {
-    const std::vector<double>& local =
-        mesh.cell_data.at("stiffness_factor").doubles(name + "/stiffness_factor");
-    for (std::size_t e = 0; e < local.size(); ++e) l.mesh.stiffness_factor[e] *= local[e];
-  }
-  for (const std::int64_t flag : field(mesh.point_data, "attached", name, file).integers(name + "/attached"))
-    l.attached.push_back(flag != 0);
-  const std::vector<std::int64_t>& of_cell =
-      field(mesh.cell_data, "leaflet", name, file).integers(name + "/leaflet");
+  l.mesh = bodies::read_shell(file, name, factor);
+  const std::vector<bool> attached = bodies::read_attached(file, name);
+  l.attached.assign(attached.begin(), attached.end());
+  const std::vector<std::int64_t>& of_cell = file.cell_data(name, "leaflet").integers(name + "/leaflet");
   l.leaflet.assign(l.points.size(), -1);
   for (std::size_t t = 0; t < l.mesh.triangles.size(); ++t)
     for (int a : l.mesh.triangles[t]) l.leaflet[a] = static_cast<int>(of_cell[t]);
@@ -134,7 +97,7 @@ Inputs read_inputs(const std::filesystem::path& path, const Parameters& p) {
   Inputs in;
   in.parent = state::read_final(path, p.device ? "deploy" : "mesher");
   const state::State& file = in.parent;
-  in.lumen = read_lumen(file);
+  in.lumen = bodies::read_level_set(file, "lumen");
   const std::vector<double>& cuts = file.array("anatomy/z_mm").doubles("anatomy/z_mm");
   if (cuts.size() < 2 || !(cuts.back() - cuts.front() > 10 * p.h))
     throw InputError("{}: 'anatomy/z_mm' has no two cuts at least {} mm apart; run segment again",
@@ -147,7 +110,7 @@ Inputs read_inputs(const std::filesystem::path& path, const Parameters& p) {
 
   const state::Mesh& frame = file.mesh("frame");
   in.frame = HeldFrame{frame.points, frame.lines("frame"), {}};
-  for (const double depth : field(frame.cell_data, "depth_mm", "frame", file).doubles("frame/depth_mm"))
+  for (const double depth : file.cell_data("frame", "depth_mm").doubles("frame/depth_mm"))
     in.frame->half_depth_mm.push_back(0.5 * depth);
   if (file.has_mesh("skirt"))
     in.skirt = HeldShell{file.mesh("skirt").points, file.mesh("skirt").triangles("skirt")};
