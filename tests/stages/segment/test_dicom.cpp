@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <fstream>
 
+#include "anatomy.hpp"
 #include "dicom_series.hpp"
 #include "phantom/phantom.hpp"
+#include "root.hpp"
 #include "support.hpp"
 
 namespace {
@@ -94,6 +96,32 @@ TEST(Dicom, AFolderWithoutASeriesIsRefused) {
   image.values.resize(40 * 36);
   write_dicom(folder / "single", image, {});
   expect_input_error([&] { segment::read_image(folder / "single"); }, {"two or more slices", "(1 slices)"});
+}
+
+TEST(Dicom, TheRealCtMeasuresTheSameAsFromItsNiftiFile) {
+  const std::filesystem::path file =
+      std::filesystem::path(VALSALVA_SOURCE_DIR) / ".." / "shared/reference/ct_thorax/ct_cropped.nii.gz";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the reference data is absent: " << file;
+  const Vec3 centre(14.0, -184.1, 660.8);
+  const test::Folder folder;
+  const Image image = cropped(segment::read_image(file), centre, 75);
+  segment::write_image(folder / "ct.nii", image);
+  write_dicom(folder / "ct", image, {});
+  const Case scene = test::case_of(
+      "[anatomy]\nkind = \"ct\"\nimage = \"x\"\ncoordinates = \"RAS\"\nupper_cut_mm = 30\n"
+      "level_set_mm = 1.2\n"
+      "annulus_centre_mm = [-14.0, 184.1, 660.8]\nannulus_normal = [0.53, 0.26, 0.81]\n");
+  const auto measured = [&](const char* name) {
+    const segment::Lumen lumen = segment::anatomy_of(scene, folder / name).lumen;
+    return segment::measure_root(lumen.distance, lumen.z_lower_mm, lumen.z_upper_mm, 5);
+  };
+  const segment::Root nifti = measured("ct.nii"), dicom = measured("ct");
+  EXPECT_GT(nifti.annulus.greatest_mm, 20);
+  EXPECT_NEAR(dicom.annulus.greatest_mm, nifti.annulus.greatest_mm, 0.01);
+  EXPECT_NEAR(dicom.annulus.least_mm, nifti.annulus.least_mm, 0.01);
+  EXPECT_NEAR(dicom.annulus.perimeter_mm, nifti.annulus.perimeter_mm, 0.01);
+  EXPECT_NEAR(dicom.sinus.greatest_mm, nifti.sinus.greatest_mm, 0.01);
+  EXPECT_NEAR(dicom.junction.perimeter_mm, nifti.junction.perimeter_mm, 0.01);
 }
 
 }  // namespace
