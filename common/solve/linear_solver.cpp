@@ -76,6 +76,7 @@ struct LinearSolver::Petsc {
   long version = -1;
   const BlockMatrix* source = nullptr;
   bool symmetric = false, direct = false;
+  int constraints = 0;  // unknowns of rank-one terms: each has a negative pivot of its own
 
   ~Petsc() { release(); }
   void release() {
@@ -102,11 +103,14 @@ struct LinearSolver::Petsc {
 void LinearSolver::Petsc::fill(const BlockMatrix& k, const std::vector<std::uint8_t>& fixed,
                                const Eigen::VectorXd& rhs, const Eigen::VectorXd& u, Eigen::VectorXd& b) {
   const int n = 3 * k.slots();
+  const auto rank_ones = k.rank_ones();
+  const int extra = static_cast<int>(rank_ones.size());
   rows.assign(1, 0);
-  rows.reserve(n + 1);
+  rows.reserve(n + extra + 1);
   columns.clear();
   values.clear();
-  b = rhs;
+  b = Eigen::VectorXd::Zero(n + extra);
+  b.head(n) = rhs;
   double diagonal = 0;
   int free_rows = 0;
   for (int i = 0; i < k.slots(); ++i) {
@@ -116,27 +120,52 @@ void LinearSolver::Petsc::fill(const BlockMatrix& k, const std::vector<std::uint
       if (!fixed[3 * i + c]) diagonal += std::abs(row.blocks[own](c, c)), ++free_rows;
   }
   diagonal = free_rows > 0 && diagonal > 0 ? diagonal / free_rows : 1;
+  const auto put = [&](int row, int column, double value) {
+    if (column != row && column < n && fixed[column]) {
+      b[row] -= value * u[column];
+      value = 0;
+    }
+    columns.push_back(column);
+    values.push_back(value);
+  };
+  // A term c v v^T as [0 w; w^T -d], w = v sqrt(c d), d of the size of the diagonal.
+  const auto weight = [&](int t) { return std::sqrt(std::abs(rank_ones[t].factor) * diagonal); };
+  std::vector<std::vector<std::pair<int, int>>> terms_at(extra > 0 ? k.slots() : 0);  // term, place in it
+  for (int t = 0; t < extra; ++t)
+    for (std::size_t m = 0; m < rank_ones[t].slots.size(); ++m)
+      terms_at[rank_ones[t].slots[m]].emplace_back(t, static_cast<int>(m));
   for (int i = 0; i < k.slots(); ++i) {
     const BlockMatrix::Row& row = k.row(i);
     for (int c = 0; c < 3; ++c) {
       const int at = 3 * i + c;
-      if (fixed[at]) b[at] = diagonal * u[at];
+      const bool held = fixed[at];
+      if (held) b[at] = diagonal * u[at];
       for (std::size_t m = 0; m < row.columns.size(); ++m)
         for (int d = 0; d < 3; ++d) {
           const int column = 3 * row.columns[m] + d;
-          double value = row.blocks[m](c, d);
-          if (fixed[at]) {
-            value = column == at ? diagonal : 0;
-          } else if (fixed[column]) {
-            b[at] -= value * u[column];
-            value = 0;
-          }
-          columns.push_back(column);
-          values.push_back(value);
+          if (held)
+            columns.push_back(column), values.push_back(column == at ? diagonal : 0);
+          else
+            put(at, column, row.blocks[m](c, d));
+        }
+      if (extra > 0)
+        for (const auto& [t, m] : terms_at[i]) {
+          columns.push_back(n + t);
+          values.push_back(held ? 0 : weight(t) * rank_ones[t].vector[3 * m + c]);
         }
       rows.push_back(static_cast<PetscInt>(columns.size()));
     }
   }
+  for (int t = 0; t < extra; ++t) {
+    const BlockMatrix::RankOne& term = rank_ones[t];
+    for (std::size_t m = 0; m < term.slots.size(); ++m)
+      for (int c = 0; c < 3; ++c)
+        put(n + t, 3 * term.slots[m] + c, weight(t) * term.vector[3 * static_cast<Eigen::Index>(m) + c]);
+    put(n + t, n + t, term.factor < 0 ? diagonal : -diagonal);
+    rows.push_back(static_cast<PetscInt>(columns.size()));
+  }
+  constraints = static_cast<int>(
+      std::count_if(rank_ones.begin(), rank_ones.end(), [](const auto& term) { return term.factor > 0; }));
 }
 
 void LinearSolver::Petsc::create(const Points& positions, const LinearSettings& settings) {
@@ -203,12 +232,12 @@ bool LinearSolver::Petsc::run(const Eigen::VectorXd& b, Eigen::VectorXd& u, Line
     require(PCFactorGetMatrix(pc, &factor), "factor");
     require(MatMumpsGetInfog(factor, 12, &negative), "negative pivots");
     require(MatMumpsGetInfog(factor, 28, &null), "null pivots");
-    report.negative_pivots = symmetric ? static_cast<int>(negative) : 0;
+    report.negative_pivots = symmetric ? static_cast<int>(negative) - constraints : 0;
     if (null > 0) return false;
   }
   const PetscScalar* found = nullptr;
   require(VecGetArrayRead(left, &found), "solution");
-  u = Eigen::Map<const Eigen::VectorXd>(found, b.size());
+  u = Eigen::Map<const Eigen::VectorXd>(found, u.size());
   require(VecRestoreArrayRead(left, &found), "solution");
   report.iterations = direct ? 0 : static_cast<int>(iterations);
   return u.allFinite();
@@ -253,8 +282,10 @@ LinearReport LinearSolver::solve(const BlockMatrix& k, const std::vector<std::ui
     report.direct = direct;
     return p.run(b, u, report);
   };
-  const bool multigrid = settings_.method == LinearMethod::multigrid ||
-                         (settings_.method == LinearMethod::automatic && rhs.size() > settings_.direct_up_to);
+  const bool multigrid =
+      k.rank_ones().empty() &&
+      (settings_.method == LinearMethod::multigrid ||
+       (settings_.method == LinearMethod::automatic && rhs.size() > settings_.direct_up_to));
   const Eigen::VectorXd given = u;
   if (multigrid) {
     if (attempt(false)) return report;

@@ -6,8 +6,9 @@
 //   multigrid   smoothed aggregation (GAMG) with the rigid motions as near-kernel, conjugate gradients, or
 //               GMRES when unsymmetric; falls back to the direct solver when it does not converge
 //   automatic   direct up to `direct_up_to` unknowns, then multigrid (docs/decisions/implicit.md)
-// Prescribed unknowns are eliminated symmetrically. One process; PETSc is started at the first solve and
-// ended with the program.
+// Rank-one terms c v v^T of the matrix become unknowns of their own, [K w; w^T -d] (indefinite: always
+// direct). Prescribed unknowns are eliminated symmetrically. One process; PETSc is started at the first solve
+// and ended with the program.
 #pragma once
 
 #include <Eigen/Core>

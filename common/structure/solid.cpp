@@ -72,6 +72,7 @@ void SolidMesh::add(Shape shape, std::span<const int> nodes) {
 struct Solid::Deformed {
   std::array<Mat3, most_points> f;
   std::array<double, most_points> j, pressure;
+  std::array<double, most_points> bulk;  // dp/dJ at fixed averages
   double volumetric_energy = 0;
   Eigen::Matrix4d curvature = Eigen::Matrix4d::Zero();
 };
@@ -85,6 +86,10 @@ Solid::Solid(SolidMesh mesh, std::shared_ptr<const materials::SolidLaw> law, For
         "displacement formulation",
         law_->name());
   check(mesh_);
+  if (formulation_ == Formulation::mixed) {
+    const double shear = law_->distortional(Mat3::Identity(), {}, 1, Derivatives::tangent).tangent(5, 5);
+    local_share_ = std::min(1.0, local_bulk_per_shear * shear / law_->bulk_modulus_Pa());
+  }
   build_elements();
 }
 
@@ -173,14 +178,23 @@ void Solid::build_elements() {
     }
     element.modes = 0;
     if (!mixed) continue;
-    if (shape != Shape::tet4) {
+    if (!averaged(e)) {
       build_modes(e, shape);
-    } else {
-      for (int a : nodes) {
-        patches_[a].push_back(e);
-        patch_volume_[a] += points_[element.first].weight / 4;
-      }
+      continue;
     }
+    for (int q = 0; q < element.count; ++q) {
+      Point& p = points_[element.first + q];
+      p.modes = evaluate(Shape::tet4, table.rule[q].at).value;
+      for (int c = 0; c < 4; ++c) patch_volume_[nodes[c]] += p.weight * p.modes[c];
+    }
+    for (int c = 0; c < 4; ++c) patches_[nodes[c]].push_back(e);
+  }
+  patch_nodes_.resize(patches_.size());
+  for (std::size_t a = 0; a < patches_.size(); ++a) {
+    std::vector<int>& around = patch_nodes_[a];
+    for (int e : patches_[a]) around.insert(around.end(), mesh_.nodes_of(e).begin(), mesh_.nodes_of(e).end());
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
   }
 }
 
@@ -244,20 +258,28 @@ std::vector<double> Solid::lumped_mass(double density_g_per_mm3) const {
 Solid::NodalPressure Solid::nodal_pressures(const Points& x, int offset) const {
   NodalPressure nodal;
   if (patches_.empty()) return nodal;
-  std::vector<double> ratio(elements(), 1.0);
+  std::vector<Eigen::Vector4d> volumes(elements(), Eigen::Vector4d::Zero());  // of the element's corners
   for_all(elements(), "element", 0, [&](int e) {
-    if (averaged(e)) ratio[e] = deform(x, offset, e, nodal).j[0];
+    if (!averaged(e)) return;
+    const Deformed d = deform(x, offset, e, nodal);
+    for (int q = 0; q < elements_[e].count; ++q) {
+      const Point& p = points_[elements_[e].first + q];
+      volumes[e] += p.weight * d.j[q] * p.modes;
+    }
   });
+  std::vector<double> volume(nodes(), 0.0);
+  for (int e = 0; e < elements(); ++e)
+    if (averaged(e))
+      for (int c = 0; c < 4; ++c) volume[mesh_.nodes_of(e)[c]] += volumes[e][c];
   nodal.pressure.assign(nodes(), 0.0);
   nodal.curvature.assign(nodes(), 0.0);
   for (int a = 0; a < nodes(); ++a) {
     if (patches_[a].empty()) continue;
-    double volume = 0;
-    for (int e : patches_[a]) volume += points_[elements_[e].first].weight / 4 * ratio[e];
-    const materials::VolumetricResponse u = law_->volumetric(volume / patch_volume_[a]);
-    nodal.energy += patch_volume_[a] * u.energy;
-    nodal.pressure[a] = u.first;
-    nodal.curvature[a] = u.second / patch_volume_[a];
+    const double share = patch_share(a);
+    const materials::VolumetricResponse u = law_->volumetric(volume[a] / patch_volume_[a]);
+    nodal.energy += share * patch_volume_[a] * u.energy;
+    nodal.pressure[a] = share * u.first;
+    nodal.curvature[a] = share * u.second / patch_volume_[a];
   }
   return nodal;
 }
@@ -276,10 +298,20 @@ Solid::Deformed Solid::deform(const Points& x, int offset, int e, const NodalPre
           "det F = {:.3g} at quadrature point {} (near ({:.4g}, {:.4g}, {:.4g}) mm); expected a positive one",
           d.j[q], q, now.row(0).mean(), now.row(1).mean(), now.row(2).mean());
   }
-  if (averaged(e)) {
-    d.pressure[0] = 0;
-    if (!nodal.pressure.empty())
-      for (int a : nodes) d.pressure[0] += 0.25 * nodal.pressure[a];
+  if (averaged(e) && !nodal.pressure.empty()) {
+    const double share = local_share(e);
+    Eigen::Vector4d pressure;
+    for (int c = 0; c < 4; ++c) pressure[c] = nodal.pressure[nodes[c]];
+    for (int q = 0; q < element.count; ++q) {
+      const Point& p = points_[element.first + q];
+      d.pressure[q] = p.modes.dot(pressure);
+      d.bulk[q] = 0;
+      if (share == 0) continue;
+      const materials::VolumetricResponse u = law_->volumetric(d.j[q]);
+      d.pressure[q] += share * u.first;
+      d.bulk[q] = share * u.second;
+      d.volumetric_energy += share * p.weight * u.energy;
+    }
   }
   if (element.modes == 0) return d;
   Eigen::Vector4d dilatation = Eigen::Vector4d::Zero(), pressure = Eigen::Vector4d::Zero();
@@ -357,6 +389,7 @@ Eigen::MatrixXd Solid::element_tangent(const Points& x, int offset, int e, const
   Eigen::Matrix<double, 6, Eigen::Dynamic> b(6, 3 * n), stressed(6, 3 * n);
   Eigen::MatrixXd dilatation = Eigen::MatrixXd::Zero(3 * n, element.modes);
   Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(n, n);
+  const bool local = averaged(e) && local_share(e) > 0;
   for (int q = 0; q < element.count; ++q) {
     const Point& p = points_[element.first + q];
     const auto g = gradient(e, p);
@@ -365,11 +398,11 @@ Eigen::MatrixXd Solid::element_tangent(const Points& x, int offset, int e, const
     stressed.noalias() = p.weight * r.tangent * b;
     k.noalias() += b.transpose() * stressed;
     pull.noalias() += p.weight * g.transpose() * r.stress * g;
-    if (element.modes > 0) {
-      const ElementPoints slope = cofactor(d.f[q]) * g;  // dJ/dx
-      const Eigen::Map<const Eigen::VectorXd> flat(slope.data(), 3 * n);
-      for (int m = 0; m < element.modes; ++m) dilatation.col(m) += p.weight * p.modes[m] * flat;
-    }
+    if (element.modes == 0 && !local) continue;
+    const ElementPoints slope = cofactor(d.f[q]) * g;  // dJ/dx
+    const Eigen::Map<const Eigen::VectorXd> flat(slope.data(), 3 * n);
+    for (int m = 0; m < element.modes; ++m) dilatation.col(m) += p.weight * p.modes[m] * flat;
+    if (local) k.noalias() += p.weight * d.bulk[q] * flat * flat.transpose();
   }
   for (int a = 0; a < n; ++a)
     for (int c = 0; c < n; ++c) k.block<3, 3>(3 * a, 3 * c).diagonal().array() += pull(a, c);
@@ -381,48 +414,57 @@ Eigen::MatrixXd Solid::element_tangent(const Points& x, int offset, int e, const
 
 template <class Use>
 void Solid::for_each_patch(const Points& x, int offset, const NodalPressure& nodal, const Use& use) const {
-  if (patches_.empty()) return;
-  for (int a = 0; a < nodes(); ++a) {
-    if (patches_[a].empty()) continue;
-    std::vector<int> around;
-    for (int e : patches_[a])
-      for (int b : mesh_.nodes_of(e)) around.push_back(b);
-    std::sort(around.begin(), around.end());
-    around.erase(std::unique(around.begin(), around.end()), around.end());
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(around.size()));
-    for (int e : patches_[a]) {
-      const Point& p = points_[elements_[e].first];
-      const Deformed d = deform(x, offset, e, nodal);
-      const Eigen::Matrix<double, 3, 4> g = p.weight / 4 * cofactor(d.f[0]) * gradient(e, p);
-      const auto nodes = mesh_.nodes_of(e);
-      for (int b = 0; b < 4; ++b)
-        slope.segment<3>(3 * (std::lower_bound(around.begin(), around.end(), nodes[b]) - around.begin())) +=
-            g.col(b);
+  constexpr int batch = 256;
+  std::vector<Eigen::VectorXd> slopes(batch);
+  std::vector<int> slots;
+  for (int first = 0; first < static_cast<int>(patches_.size()); first += batch) {
+    const int count = std::min<int>(batch, static_cast<int>(patches_.size()) - first);
+    for_all(count, "patch of node", first, [&](int i) {
+      const int a = first + i;
+      const std::vector<int>& around = patch_nodes_[a];
+      Eigen::VectorXd& slope = slopes[i];
+      slope.setZero(3 * static_cast<Eigen::Index>(around.size()));
+      if (nodal.curvature[a] == 0) return;
+      for (int e : patches_[a]) {
+        const auto nodes = mesh_.nodes_of(e);
+        const auto corner = std::find(nodes.begin(), nodes.begin() + 4, a) - nodes.begin();
+        const Deformed d = deform(x, offset, e, nodal);
+        ElementPoints g = ElementPoints::Zero(3, nodes.size());
+        for (int q = 0; q < elements_[e].count; ++q) {
+          const Point& p = points_[elements_[e].first + q];
+          g.noalias() += p.weight * p.modes[corner] * cofactor(d.f[q]) * gradient(e, p);
+        }
+        for (std::size_t b = 0; b < nodes.size(); ++b)
+          slope.segment<3>(3 * (std::lower_bound(around.begin(), around.end(), nodes[b]) - around.begin())) +=
+              g.col(static_cast<Eigen::Index>(b));
+      }
+    });
+    for (int i = 0; i < count; ++i) {
+      if (nodal.curvature[first + i] == 0) continue;
+      slots = patch_nodes_[first + i];
+      for (int& b : slots) b += offset;
+      use(slots, slopes[i], nodal.curvature[first + i]);
     }
-    for (int& b : around) b += offset;
-    use(around, slope, nodal.curvature[a]);
   }
 }
 
 void Solid::add_tangent(const Points& x, BlockMatrix& out, int offset) const {
   const NodalPressure nodal = nodal_pressures(x, offset);
-  constexpr int batch = 64;  // bounds the memory; the sums keep the order of the elements
-  std::vector<Eigen::MatrixXd> k(batch);
-  std::vector<int> slots;
+  constexpr int batch = 256;  // bounds the memory; the sums keep the order of the elements
+  std::vector<BlockMatrix::Piece> pieces(batch);
   for (int first = 0; first < elements(); first += batch) {
     const int count = std::min(batch, elements() - first);
-    for_all(count, "element", first, [&](int i) { k[i] = element_tangent(x, offset, first + i, nodal); });
-    for (int i = 0; i < count; ++i) {
+    for_all(count, "element", first, [&](int i) {
       const auto nodes = mesh_.nodes_of(first + i);
-      slots.assign(nodes.begin(), nodes.end());
-      for (int& a : slots) a += offset;
-      out.add(slots, k[i]);
-    }
+      pieces[i].slots.assign(nodes.begin(), nodes.end());
+      for (int& a : pieces[i].slots) a += offset;
+      pieces[i].k = element_tangent(x, offset, first + i, nodal);
+    });
+    out.add({pieces.data(), static_cast<std::size_t>(count)});
   }
   for_each_patch(x, offset, nodal,
                  [&](const std::vector<int>& around, const Eigen::VectorXd& slope, double curvature) {
-                   const Eigen::MatrixXd patch = curvature * slope * slope.transpose();
-                   out.add(around, patch);
+                   out.add_rank_one(around, slope, curvature);
                  });
 }
 

@@ -13,12 +13,16 @@
 //            meshes (average them); displacements are good.
 //     hex27  Q2P1: theta = a + b.(X - X_c), in reference coordinates, so that order 3 holds on general
 //            meshes. Stable; the element of choice for stress near the incompressible limit.
-//     tet10  P2P0: theta constant. P2P1 with discontinuous pressure has as many constraints as unknowns (4 x
-//            6V against 3 x 8V for V vertices) and locks; with P0 the ratio is 4. Order falls to 2 in
-//            displacement.
-//     tet4   nodal averages: theta_a = sum_e V_e J_e / sum_e V_e over the tetrahedra at node a, U at nodes
-//            with a quarter of their volumes (Bonet and Burton 1998). W is not averaged: bending stays stiff;
-//            pressures may oscillate. Each node couples with the neighbours of its neighbours.
+//     tet10  averages at the corners: theta_a = integral l_a J / V_a, V_a = integral l_a, l_a the linear
+//            shape functions; U at corners, sum_a V_a U(theta_a). In the limit the constraint is that of
+//            Taylor and Hood's P2P1 (continuous linear pressure; inf-sup stable, order 3), whose compliance
+//            1/K is lumped here; that costs a relative error of (mu/K) h^2, so the part of U that cannot
+//            lock, as if K were local_bulk_per_shear x mu, is integrated point by point instead. One pressure
+//            an element (P2P0) was measured and dropped: order 2; discontinuous P1 has as many constraints
+//            as unknowns and locks.
+//     tet4   the same averages with the one-point rule, theta_a = sum_e V_e J_e / sum_e V_e (Bonet and Burton
+//            1998), nothing point by point. W is not averaged: bending stays stiff; pressures may oscillate.
+//   Averages couple all nodes around a corner; BlockMatrix keeps these terms apart from the matrix.
 //   All need a finite bulk modulus (1e5 shear moduli are fine for the direct solver).
 // St. Venant-Kirchhoff and Fung laws without volumetric term cannot be split: displacement only.
 //
@@ -39,6 +43,9 @@
 namespace valsalva::structure {
 
 enum class Formulation { displacement, mixed };
+
+/// Bulk modulus, in shear moduli at rest, up to which the mixed tet10 takes U point by point.
+inline constexpr double local_bulk_per_shear = 10;
 
 struct SolidMesh {
   Points reference;               ///< the stress-free shape
@@ -90,7 +97,7 @@ class Solid {
   void add_stiffness_bound(const Points& x, std::vector<double>& bound, int offset = 0) const;
   /// Stress and strain at the element's quadrature points.
   std::vector<SolidPoint> points_of(const Points& x, int element, int offset = 0) const;
-  /// The same of all elements; the nodal pressures of tet4 are found once.
+  /// The same of all elements; the pressures of the averages are found once.
   std::vector<std::vector<SolidPoint>> all_points(const Points& x, int offset = 0) const;
 
  private:
@@ -98,16 +105,16 @@ class Solid {
   struct Point {
     double weight;
     std::size_t gradient;   // into gradients_, 3 x nodes
-    Eigen::Vector4d modes;  // orthonormal functions of theta at this point
+    Eigen::Vector4d modes;  // orthonormal functions of theta at this point; of averages: the corners' l_a
     Vec3 reference;
   };
   struct Element {
     int first, count;  // into points_
-    int modes;         // 0: displacement, or the nodal averages of tet4
+    int modes;         // 0: displacement, or averages at the corners
     materials::Fibres fibres;
     double factor;
   };
-  // The volumetric state of the tet4 patches: per node.
+  // The volumetric state of the patches of tetrahedra: per node.
   struct NodalPressure {
     std::vector<double> pressure, curvature;  // U'(theta), U''(theta)/V
     double energy = 0;
@@ -118,8 +125,12 @@ class Solid {
   void build_elements();
   void build_modes(int element, Shape shape);
   bool averaged(int element) const {
-    return formulation_ == Formulation::mixed && mesh_.shapes[element] == Shape::tet4;
+    return formulation_ == Formulation::mixed &&
+           (mesh_.shapes[element] == Shape::tet4 || mesh_.shapes[element] == Shape::tet10);
   }
+  // The part of U that is integrated point by point, and that of the averages.
+  double local_share(int element) const { return mesh_.shapes[element] == Shape::tet10 ? local_share_ : 0; }
+  double patch_share(int node) const { return 1 - local_share(patches_[node].front()); }
   Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>> gradient(int element, const Point& p) const;
   NodalPressure nodal_pressures(const Points& x, int offset) const;
   Deformed deform(const Points& x, int offset, int element, const NodalPressure& nodal) const;
@@ -130,7 +141,7 @@ class Solid {
   Eigen::MatrixXd element_tangent(const Points& x, int offset, int element, const NodalPressure& nodal) const;
   std::vector<SolidPoint> points_of(const Points& x, int element, int offset,
                                     const NodalPressure& nodal) const;
-  // Calls use(nodes of the patch, d(V theta)/dx, U''/V) for every node with tet4.
+  // Calls use(nodes of the patch, d(V theta)/dx, U''/V) for every corner with averages.
   template <class Use>
   void for_each_patch(const Points& x, int offset, const NodalPressure& nodal, const Use& use) const;
 
@@ -140,7 +151,9 @@ class Solid {
   std::vector<Element> elements_;
   std::vector<Point> points_;
   std::vector<double> gradients_;
-  std::vector<std::vector<int>> patches_;  // per node: its tet4, when they are averaged
+  double local_share_ = 0;
+  std::vector<std::vector<int>> patches_;  // per node: the tetrahedra that are averaged there
+  std::vector<std::vector<int>> patch_nodes_;
   std::vector<double> patch_volume_;
 };
 
