@@ -16,7 +16,8 @@ namespace valsalva {
 
 class Case {
  public:
-  /// overrides: "table.key=value" as given to --set.
+  /// overrides: "table.key=value" as given to --set; "table.NAME.key=value" for the entry NAME of a repeated
+  /// table.
   static Case load(const std::filesystem::path& file, const Schema& schema, Fidelity fidelity,
                    const std::vector<std::string>& overrides);
   static Case from_text(const std::string& text, const std::string& label, const Schema& schema,

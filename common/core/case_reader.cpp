@@ -149,15 +149,40 @@ struct CaseReader::Impl {
     throw std::logic_error("internal error: parameter kind");
   }
 
+  /// What an override writes to: the case, or of a repeated table the entry "table.name.key" speaks of.
+  Case& overridden(const std::string& key) {
+    const auto first = key.find('.'), last = key.rfind('.');
+    const std::string name = key.substr(0, first);
+    const Table* table = schema.find_table(name);
+    if (!table || !table->repeated) {
+      if (table && first != last)
+        throw InputError("{}: '{}' has one dot too many; expected table.key=value", label, key);
+      return result;
+    }
+    std::vector<std::string> names;
+    for (const Case& entry : result.entries(name)) names.push_back(entry.text(name + ".name"));
+    if (first == last)
+      throw InputError("{}: [[{}]] is repeated; expected {}.NAME.{}=value with NAME one of {}", label, name,
+                       name, key.substr(last + 1), fmt::join(names, ", "));
+    const std::string wanted = key.substr(first + 1, last - first - 1);
+    const auto found = std::find(names.begin(), names.end(), wanted);
+    if (found == names.end())
+      throw InputError("{}: there is no [[{}]] named '{}'{}; expected one of {}", label, name, wanted,
+                       suggestion(nearest(wanted, names)), fmt::join(names, ", "));
+    return result.entries_[name][found - names.begin()];
+  }
+
   void apply_override(const std::string& text) {
     label = "--set " + text;
     const auto equals = text.find('=');
     const std::string key = text.substr(0, equals);
     if (equals == std::string::npos || key.find('.') == std::string::npos)
       throw InputError("{}: expected table.key=value", label);
-    const Parameter* parameter = schema.find(key);
+    Case& entry = overridden(key);
+    const std::string full = key.substr(0, key.find('.')) + key.substr(key.rfind('.'));
+    const Parameter* parameter = schema.find(full);
     if (!parameter)
-      throw InputError("{}: unknown key '{}'{}", label, key, suggestion(schema.nearest_key(key)));
+      throw InputError("{}: unknown key '{}'{}", label, full, suggestion(schema.nearest_key(full)));
     std::string value = text.substr(equals + 1);
     // Words need no quotes on a command line.
     const bool wordy = parameter->kind == Parameter::Kind::text || parameter->kind == Parameter::Kind::choice;
@@ -168,8 +193,8 @@ struct CaseReader::Impl {
     } catch (const toml::parse_error& error) {
       throw InputError("{}: '{}' is not a TOML value: {}", label, value, std::string(error.description()));
     }
-    result.values_[key] = converted(*parameter, *parsed.get("value"));
-    result.set_.insert(key);
+    entry.values_[full] = converted(*parameter, *parsed.get("value"));
+    entry.set_.insert(full);
     result.present_.insert(key.substr(0, key.find('.')));
   }
 };

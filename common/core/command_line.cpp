@@ -81,6 +81,7 @@ CommandLine parse_command_line(int argc, char** argv) {
 std::string options_help() {
   return "Options:\n"
          "  --set table.key=value   override a key of the case file (repeatable)\n"
+         "                          (of a repeated table: table.NAME.key=value)\n"
          "  --fidelity LEVEL        draft, standard, fine or reference\n"
          "  --out DIR               folder of this stage's results (default runs/<case>/<stage>)\n"
          "  --from STATE.h5         the parent stage's state (default: the newest in runs/<case>/<parent>)\n"

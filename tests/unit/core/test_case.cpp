@@ -62,6 +62,21 @@ TEST(Case, RepeatedTablesKeepTheirOrderAndDefaults) {
   EXPECT_EQ(scene.entries("body")[1].real("body.thickness_mm"), 0.3);
 }
 
+TEST(Case, AnOverrideReachesTheEntryOfARepeatedTableThatItNames) {
+  const std::string text = "[[body]]\nname = \"a\"\n[[body]]\nname = \"b.1\"\n";
+  const Case scene = read(text, {"body.b.1.thickness_mm=0.7"});
+  EXPECT_EQ(scene.entries("body")[0].real("body.thickness_mm"), 0.4);
+  EXPECT_EQ(scene.entries("body")[1].real("body.thickness_mm"), 0.7);
+  EXPECT_TRUE(scene.entries("body")[1].is_set("body.thickness_mm"));
+  const auto refused = [&](const std::string& override_text, std::initializer_list<const char*> words) {
+    expect_error(ExitCode::input, words, [&] { read(text, {override_text}); });
+  };
+  refused("body.thickness_mm=0.7", {"repeated", "body.NAME.thickness_mm", "a, b.1"});
+  refused("body.c.thickness_mm=0.7", {"no [[body]] named 'c'", "a, b.1"});
+  refused("body.a.thickness=0.7", {"unknown key 'body.thickness'", "thickness_mm"});
+  refused("crimp.a.kind=iris", {"one dot too many"});
+}
+
 TEST(Case, ErrorsNameFileLineKeyFoundAndExpected) {
   expect_refused("[crimp]\nspeed_mm_per_s = -4\n",
                  {"sample.toml:2", "crimp.speed_mm_per_s", "found -4", "[1, 5000]"});
