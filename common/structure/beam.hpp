@@ -1,4 +1,5 @@
-// A network of straight elastic beams with rectangular section: nodes with positions and rotations.
+// A network of straight beams with rectangular section, elastic or superelastic: nodes with positions and
+// rotations.
 //
 // Corotational energy of an element of reference length L between the nodes a and b. With the chord p = (x_b
 // - x_a)/l and the nodal triads t_i = R E_i (E_1 along the reference chord, E_2 along the section's width,
@@ -15,13 +16,21 @@
 // Section: width b along E_2 (circumferential), depth d along E_3 (radial):
 //   I_z = d b^3/12 (bending along the width), I_y = b d^3/12, J = b d^3 (1/3 - 0.21 d/b (1 - d^4/(12 b^4))),
 //   b >= d (J of the formula, unless the mesh gives it).
+//
+// Superelastic: in place of the energy of stretch and bending, fibres over the section at stations along the
+// element (beam_fibres.hpp), torsion elastic with the shear modulus of austenite. Forces then depend on a
+// FibreHistory, which BeamTerm keeps: it is advanced at the begin of a step to the configuration that was
+// accepted, and trial configurations leave it alone, so that a refused step is undone by restoring positions
+// and the term's snapshot.
 // Lengths mm, moduli Pa, forces uN, moments uN mm, energy nJ.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "structure/beam_fibres.hpp"
 #include "structure/force_term.hpp"
 
 namespace valsalva::structure {
@@ -45,6 +54,9 @@ struct BeamMaterial {
   double young_Pa = 0;
   double poisson = 0.3;
   double density_g_per_mm3 = 0;
+  /// Given: the moduli are those of this law, and young_Pa and poisson are not used.
+  std::shared_ptr<const materials::Superelastic> superelastic = nullptr;
+  FibreGrid fibres = {};
 };
 
 /// The direction away from the z axis at the middle of every element: the depth axis of a stent's struts.
@@ -69,15 +81,24 @@ class BeamNetwork {
   /// Half the mass of every adjacent element times L^2/12 or the section's gyration, whichever is larger.
   std::vector<double> lumped_inertia() const;
 
-  /// Positions x[offset + a], rotations rotation[rotation_offset + a]; returns the energy.
+  bool superelastic() const { return fibres_.has_value(); }
+  /// All austenite, nothing dissipated; empty for elastic beams.
+  FibreHistory rest() const;
+  /// Positions x[offset + a], rotations rotation[rotation_offset + a]; returns the stored energy. `history`
+  /// (null: at rest) matters to superelastic beams only.
   double add_forces(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, Points& force,
-                    Points& moment, int offset = 0, int rotation_offset = 0) const;
+                    Points& moment, int offset = 0, int rotation_offset = 0,
+                    const FibreHistory* history = nullptr) const;
+  /// Takes the history to this configuration.
+  void advance(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, FibreHistory& history,
+               int offset = 0, int rotation_offset = 0) const;
   void add_stiffness_bound(const Points& x, StiffnessBound& out, int offset = 0,
                            int rotation_offset = 0) const;
-  /// 12x12 a beam, by central differences of its forces and moments over positions and spins (1e-6 of its
+  /// 12x12 a beam: B^T D B with the section's tangent D and the gradients B of the measures, plus the
+  /// change of B at constant section forces, by central differences over positions and spins (1e-6 of its
   /// length, 1e-6 rad: eight digits). Not symmetric where a moment acts.
   void add_tangent(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, BlockMatrix& out,
-                   int offset = 0, int rotation_offset = 0) const;
+                   int offset = 0, int rotation_offset = 0, const FibreHistory* history = nullptr) const;
   BeamState element_state(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, int element,
                           int offset = 0, int rotation_offset = 0) const;
 
@@ -105,9 +126,20 @@ class BeamNetwork {
               int element) const;
   Sines sines(const Points& x, const std::vector<Eigen::Quaterniond>& rotation, int element, int offset,
               int rotation_offset) const;
-  double element_forces(const Sines& s, int element, Ends& out) const;
   static Angles angles_of(const Sines& s);
+  BeamMeasures measures(const Sines& s, int element) const;
+  /// Section forces at q, returns the stored energy; the tangent unless null.
+  double section(const BeamMeasures& q, int element, const FibreHistory* history, BeamMeasures& force,
+                 BeamStiffness* stiffness) const;
+  static Ends on_ends(const Sines& s, const BeamMeasures& force);
+  const materials::SuperelasticState* fibres_of(const FibreHistory* history, int element) const;
+  FibreSection::Shape shape(int element) const {
+    return {elements_[element].length, mesh_.width_mm[element], mesh_.depth_mm[element]};
+  }
+
   BeamMesh mesh_;
+  std::optional<FibreSection> fibres_;
+  std::vector<materials::SuperelasticState> austenite_;  // of one element
   std::vector<Element> elements_;
   double coupling_length_;  // scales rotations against positions in the stiffness bound
 };
@@ -115,23 +147,36 @@ class BeamNetwork {
 /// A beam network as one force term of a System.
 class BeamTerm : public ForceTerm {
  public:
-  BeamTerm(std::shared_ptr<const BeamNetwork> network, const Body& body);
+  /// `history`: what a former run left in the fibres; empty: rest. InputError when it belongs to another
+  /// network.
+  BeamTerm(std::shared_ptr<const BeamNetwork> network, const Body& body, FibreHistory history = {});
   std::string name() const override { return body_.name; }
+  void begin_step(const Configuration& now, double) override {
+    network_->advance(now.x, now.rotation, history_, body_.offset, body_.rotation_offset);
+  }
   double add_forces(const Configuration& now, Forces& out) const override {
     return network_->add_forces(now.x, now.rotation, out.force, out.moment, body_.offset,
-                                body_.rotation_offset);
+                                body_.rotation_offset, &history_);
   }
   void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const override {
     network_->add_stiffness_bound(now.x, out, body_.offset, body_.rotation_offset);
   }
   void add_tangent(const Configuration& now, BlockMatrix& out) const override {
-    network_->add_tangent(now.x, now.rotation, out, body_.offset, body_.rotation_offset);
+    network_->add_tangent(now.x, now.rotation, out, body_.offset, body_.rotation_offset, &history_);
   }
+  Snapshot save() const override;
+  void restore(const Snapshot& snapshot) override;
   const BeamNetwork& network() const { return *network_; }
+  /// As of the last begin_step.
+  const FibreHistory& history() const { return history_; }
+  double dissipated_nJ() const { return history_.dissipated_nJ; }
+  /// Largest fraction of martensite of any fibre.
+  double largest_martensite() const;
 
  private:
   std::shared_ptr<const BeamNetwork> network_;
   Body body_;
+  FibreHistory history_;
 };
 
 }  // namespace valsalva::structure
