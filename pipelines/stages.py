@@ -39,7 +39,7 @@ def parents_of(tables):
         graph["crimp"] = ["stent"]
         if anatomy:
             graph["deploy"] = ["crimp", "mesher"]
-    if fluid:
+    if fluid or "body" in tables:
         last = next((s for s in ("deploy", "mesher") if s in graph), None)
         graph["cycle"] = [last] if last else []
     graph["report"] = [s for s in ORDER if s in graph]
@@ -59,7 +59,8 @@ class Chain:
         for pair in self.overrides:
             key, _, value = pair.partition("=")
             table, _, name = key.partition(".")
-            self.tables.setdefault(table, {})[name] = value.strip('"')
+            if not isinstance(self.tables.setdefault(table, {}), list):  # entries of [[table]] choose no stages
+                self.tables[table][name] = value.strip('"')
         self.name = self.tables.get("case", {}).get("name") or self.path.stem
         self.fidelity = fidelity
         self.ranks = ranks or min(2, os.cpu_count() or 1)

@@ -7,6 +7,7 @@
 #include "assembly/generate.hpp"
 #include "assembly/material.hpp"
 #include "assembly/mesh_file.hpp"
+#include "assembly/valve_shapes.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "structure/shell_term.hpp"
@@ -104,10 +105,15 @@ class Builder {
     const Map map = map_of(frame, shape, solid);
     if (!solid) {
       const auto n = divisions(2);
-      return sheet(map, {n[0], n[1]}, pattern());
+      return copied(sheet(map, {n[0], n[1]}, pattern()), frame);
     }
     const auto n = divisions(3);
-    return block(map, {n[0], n[1], n[2]}, element());
+    return copied(block(map, {n[0], n[1], n[2]}, element()), frame);
+  }
+
+  BodyMesh copied(BodyMesh mesh, const Frame& frame) const {
+    const int copies = in_.integer("body.copies");
+    return copies > 1 ? repeated_round(mesh, frame, copies) : mesh;
   }
 
   Map map_of(const Frame& frame, const std::string& shape, bool solid) const {
@@ -117,6 +123,8 @@ class Builder {
 
   Map plain_map(const Frame& frame, const std::string& shape, bool solid) const {
     const double wall = solid && shape != "box" ? positive_real("wall_mm") : 0;
+    if (shape == "leaflet") return leaflet_map(frame, valve(wall), part());
+    if (shape == "crown") return crown_map(frame, valve(wall), part());
     if (shape == "cylinder")
       return cylinder_map(frame, positive_real("radius_mm"), range("angle_deg"), list("size_mm", 1)[0], wall);
     if (shape == "sphere")
@@ -124,6 +132,22 @@ class Builder {
     const auto size = list("size_mm", solid ? 3 : 2);
     return plate_map(frame, {size[0], size[1], solid ? size[2] : 0}, real("twist_deg"));
   }
+
+  ValveShape valve(double wall) const {
+    ValveShape v;
+    v.radius = positive_real("radius_mm");
+    v.height = real("attachment_mm");
+    v.post = real("commissure_mm");
+    v.gap = real("free_edge_gap_mm");
+    v.peak = real("free_edge_peak_mm");
+    v.exponent = real("attachment_exponent");
+    v.half_angle_deg = real("leaflet_half_angle_deg");
+    v.base = real("base_mm");
+    v.wall = wall;
+    check_valve(v, what_);
+    return v;
+  }
+  std::array<double, 2> part() const { return range("leaflet_part"); }
 
   Pattern pattern() const {
     const std::string& p = text("pattern");
@@ -141,23 +165,44 @@ class Builder {
                           : Shape::hex8;
   }
 
+  /// Of each node of a shell.
+  std::vector<double> thickness(const BodyMesh& mesh) const {
+    const auto& grid = in_.reals("body.thickness_grid_mm");
+    if (!grid.empty()) return thickness_on_grid(mesh, grid);
+    if (text("thickness_field").empty())
+      return std::vector<double>(mesh.points.size(), positive_real("thickness_mm"));
+    const auto field = mesh.fields.find(text("thickness_field"));
+    if (field == mesh.fields.end())
+      throw InputError("{}: thickness_field '{}' is not in the mesh file (node data with one component)",
+                       what_, text("thickness_field"));
+    for (std::size_t a = 0; a < field->second.size(); ++a)
+      if (!(field->second[a] > 0))
+        throw InputError("{}: thickness_field '{}' is {} at node {}; expected a positive thickness in mm",
+                         what_, field->first, field->second[a], a);
+    return field->second;
+  }
+
+  std::vector<double> thickness_on_grid(const BodyMesh& mesh, const std::vector<double>& values) const {
+    const auto count = list("thickness_grid", 2);
+    const std::array<int, 2> n{static_cast<int>(count[0]), static_cast<int>(count[1])};
+    if (!mesh.fields.contains("grid2"))
+      throw InputError("{}: thickness_grid_mm needs a generated sheet; expected shape other than \"{}\"",
+                       what_, text("shape"));
+    if (n[0] < 2 || n[1] < 2 || values.size() != static_cast<std::size_t>(n[0]) * n[1])
+      throw InputError(
+          "{}: thickness_grid_mm has {} values; expected thickness_grid = {} x {}, at least 2 x 2", what_,
+          values.size(), n[0], n[1]);
+    std::vector<double> t;
+    for (std::size_t a = 0; a < mesh.points.size(); ++a)
+      t.push_back(bilinear(values, n, mesh.fields.at("grid1")[a], mesh.fields.at("grid2")[a]));
+    return t;
+  }
+
   void make_shell(BuiltBody& b) const {
     structure::ShellMesh mesh;
     mesh.reference = b.mesh.points;
     mesh.triangles = b.mesh.triangles;
-    if (text("thickness_field").empty()) {
-      mesh.thickness_mm.assign(b.mesh.points.size(), positive_real("thickness_mm"));
-    } else {
-      const auto field = b.mesh.fields.find(text("thickness_field"));
-      if (field == b.mesh.fields.end())
-        throw InputError("{}: thickness_field '{}' is not in the mesh file (node data with one component)",
-                         what_, text("thickness_field"));
-      for (std::size_t a = 0; a < field->second.size(); ++a)
-        if (!(field->second[a] > 0))
-          throw InputError("{}: thickness_field '{}' is {} at node {}; expected a positive thickness in mm",
-                           what_, field->first, field->second[a], a);
-      mesh.thickness_mm = field->second;
-    }
+    mesh.thickness_mm = thickness(b.mesh);
     Points middle, normal;
     for (const Triangle& t : mesh.triangles) {
       const Vec3 &p = mesh.reference[t[0]], &q = mesh.reference[t[1]], &r = mesh.reference[t[2]];

@@ -1,6 +1,7 @@
 #include "assembly/generate.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "core/errors.hpp"
@@ -31,6 +32,7 @@ struct Grid {
             const int node = static_cast<int>(out.points.size());
             if (at[d] == 0) out.groups["start" + direction].push_back(node);
             if (at[d] == count[d] - 1) out.groups["end" + direction].push_back(node);
+            out.fields["grid" + direction].push_back(s[d]);
           }
           out.points.push_back(map(s));
         }
@@ -137,7 +139,10 @@ BodyMesh sheet(const Map& map, std::array<int, 2> divisions, Pattern pattern) {
                 d = grid.index(i, j + 1, 0);
       if (pattern == Pattern::crossed) {
         const int centre = static_cast<int>(mesh.points.size());
-        mesh.points.push_back(map({(i + 0.5) / divisions[0], (j + 0.5) / divisions[1], 0}));
+        const Vec3 middle((i + 0.5) / divisions[0], (j + 0.5) / divisions[1], 0);
+        mesh.points.push_back(map(middle));
+        mesh.fields["grid1"].push_back(middle.x());
+        mesh.fields["grid2"].push_back(middle.y());
         for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, d}, {d, a}})
           mesh.triangles.push_back({p, q, centre});
         continue;
@@ -188,6 +193,44 @@ BodyMesh block(const Map& map, std::array<int, 3> divisions, structure::Shape sh
           });
       }
   return sewn(mesh);
+}
+
+BodyMesh repeated_round(const BodyMesh& mesh, const Frame& frame, int copies) {
+  BodyMesh all;
+  const int nodes = static_cast<int>(mesh.points.size());
+  const Vec3 axis = frame.axes.col(2);
+  for (int copy = 0; copy < copies; ++copy) {
+    const Eigen::AngleAxisd turn(2 * M_PI * copy / copies, axis);
+    const int first = copy * nodes;
+    for (const Vec3& x : mesh.points) all.points.push_back(frame.origin + turn * (x - frame.origin));
+    for (const Triangle& t : mesh.triangles)
+      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Edge& e : mesh.lines) all.lines.push_back({e[0] + first, e[1] + first});
+    for (SolidCell cell : mesh.solids) {
+      for (int& a : cell.nodes) a += first;
+      all.solids.push_back(std::move(cell));
+    }
+    for (const auto& [name, members] : mesh.groups)
+      for (int a : members) {
+        all.groups[name].push_back(a + first);
+        all.groups[name + "_" + std::to_string(copy + 1)].push_back(a + first);
+      }
+    for (const auto& [name, values] : mesh.fields)
+      all.fields[name].insert(all.fields[name].end(), values.begin(), values.end());
+  }
+  return sewn(all);
+}
+
+double bilinear(const std::vector<double>& values, std::array<int, 2> count, double u, double v) {
+  const auto cell = [](double t, int n) {
+    const int i = std::clamp(static_cast<int>(t * (n - 1)), 0, n - 2);
+    return std::pair{i, t * (n - 1) - i};
+  };
+  const auto [i, a] = cell(u, count[0]);
+  const auto [j, b] = cell(v, count[1]);
+  const auto at = [&](int p, int q) { return values[q * count[0] + p]; };
+  return (1 - b) * ((1 - a) * at(i, j) + a * at(i + 1, j)) +
+         b * ((1 - a) * at(i, j + 1) + a * at(i + 1, j + 1));
 }
 
 }  // namespace valsalva::assembly

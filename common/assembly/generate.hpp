@@ -7,7 +7,8 @@
 //   sphere    radius (sin p (cos a e1 + sin a e2) + cos p e3)   grid: azimuth, polar angle; pole nodes merge
 //   line, arc e1; radius (cos a e1 + sin a e2)
 // Solids have a third grid direction: the box its third length, cylinder and sphere the wall outwards.
-// A closed azimuth (360 degrees) is sewn; triangles and solids are outward (plate: along e3).
+// A closed azimuth (360 degrees) is sewn; triangles and solids are outward (plate: along e3). The nodal fields
+// "grid1", "grid2", "grid3" hold each node's place in the grid, from 0 to 1.
 #pragma once
 
 #include <functional>
@@ -45,5 +46,13 @@ enum class Pattern { alternating, right, left, crossed };
 BodyMesh curve(const Map& map, int divisions);
 BodyMesh sheet(const Map& map, std::array<int, 2> divisions, Pattern pattern);
 BodyMesh block(const Map& map, std::array<int, 3> divisions, structure::Shape shape);
+
+/// The mesh and its copies turned evenly about the frame's third axis, sewn where they meet. A group holds the
+/// nodes of all copies; "<group>_1" those of the first, and so on.
+BodyMesh repeated_round(const BodyMesh& mesh, const Frame& frame, int copies);
+
+/// Values on count[0] x count[1] evenly spaced points of the unit square, the first direction running fastest;
+/// at least two points each way.
+double bilinear(const std::vector<double>& values, std::array<int, 2> count, double u, double v);
 
 }  // namespace valsalva::assembly

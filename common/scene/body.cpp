@@ -5,7 +5,7 @@ namespace {
 
 void declare_mesh_keys(Schema& schema) {
   schema.choice(
-      "body.shape", "file", {"file", "plate", "cylinder", "sphere", "box", "line", "arc"},
+      "body.shape", "file", {"file", "plate", "cylinder", "sphere", "box", "line", "arc", "leaflet", "crown"},
       "Where the mesh comes from: a file, or generated in the frame origin, direction1, direction2");
   schema.text("body.file", "",
               "Mesh file: .msh (gmsh), .vtk (legacy), .stl, .ply, .obj or .off, for shape = \"file\"");
@@ -25,6 +25,21 @@ void declare_mesh_keys(Schema& schema) {
   schema.reals("body.angle_deg", {0, 360}, 2, {-360, 360},
                "Azimuth from direction1 towards direction2, from and to");
   schema.reals("body.polar_deg", {0, 180}, 2, {0, 180}, "sphere: angle from the third axis, from and to");
+  schema.integer("body.copies", 1, {1, 1000},
+                 "Generated shapes: copies turned evenly about the third axis, as one body");
+  schema.real("body.attachment_mm", 0, not_negative(),
+              "leaflet, crown: height of the attachment, from its lowest point to the commissure");
+  schema.real("body.attachment_exponent", 2, {1, 10},
+              "leaflet, crown: the attachment is height |s|^exponent");
+  schema.real("body.commissure_mm", 0, not_negative(), "leaflet, crown: straight post above the attachment");
+  schema.real("body.free_edge_gap_mm", 0, not_negative(),
+              "leaflet: distance of the free edge's middle from the axis, at rest");
+  schema.real("body.free_edge_peak_mm", 0, not_negative(), "leaflet: rise of the free edge in its middle");
+  schema.real("body.leaflet_half_angle_deg", 60, {10, 60},
+              "leaflet, crown: azimuth from its middle to a commissure; below 60: room for posts");
+  schema.reals("body.leaflet_part", {-1, 1}, 2, {-1, 1},
+               "leaflet, crown: the part that is modelled, from -1 (one commissure) to 1; half: 0 to 1");
+  schema.real("body.base_mm", 0, not_negative(), "crown: its depth below the attachment's lowest point");
   schema.real("body.twist_deg", 0, {-720, 720}, "plate, box: turn about direction1 at the far end");
   schema.reals("body.grading", {1, 1, 1}, 3, positive(),
                "Sheets, solids: size of the last element over the first, along each direction of divisions");
@@ -71,6 +86,10 @@ void declare_body(Schema& schema) {
   declare_mesh_keys(schema);
   schema.real("body.thickness_mm", 0, not_negative(),
               "Thickness of a shell; contact thickness of a rigid body");
+  schema.reals(
+      "body.thickness_grid_mm", {}, 0, positive(),
+      "Generated shells: thickness on a grid over the sheet, first direction fastest, bilinear between");
+  schema.reals("body.thickness_grid", {}, 0, {2, 1000}, "Points of that grid along both directions");
   schema.text("body.thickness_field", "", "Node data of the file (gmsh view) that holds the thickness in mm");
   schema.real("body.width_mm", 0, not_negative(), "Beams: section across depth_direction");
   schema.real("body.depth_mm", 0, not_negative(), "Beams: section along depth_direction");

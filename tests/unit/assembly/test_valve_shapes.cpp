@@ -1,0 +1,107 @@
+// The trileaflet shapes, copies about the axis, and thickness on a grid.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "assembly/valve_shapes.hpp"
+#include "expect_error.hpp"
+
+namespace valsalva::assembly {
+namespace {
+
+const Frame upright{Vec3(1, 2, 3), Mat3::Identity()};
+
+ValveShape sample() {
+  ValveShape v;
+  v.radius = 12;
+  v.height = 11;
+  v.post = 2;
+  v.gap = 2.5;
+  v.peak = 1;
+  v.half_angle_deg = 57;
+  v.base = 3;
+  return v;
+}
+
+TEST(ValveShapes, TheLeafletHangsOnTheTubeAndTheCrownMeetsItNodeByNode) {
+  const ValveShape v = sample();
+  const BodyMesh leaflet = sheet(leaflet_map(upright, v, {-1, 1}), {16, 8}, Pattern::alternating);
+  const BodyMesh crown = sheet(crown_map(upright, v, {-1, 1}), {16, 4}, Pattern::alternating);
+  const auto& hung = leaflet.groups.at("start2");
+  const auto& top = crown.groups.at("end2");
+  ASSERT_EQ(hung.size(), 17u);
+  ASSERT_EQ(top.size(), 17u);
+  for (std::size_t i = 0; i < 17; ++i) {
+    const Vec3 x = leaflet.points[hung[i]] - upright.origin;
+    EXPECT_NEAR(x.head<2>().norm(), 12, 1e-12);
+    EXPECT_LT((leaflet.points[hung[i]] - crown.points[top[i]]).norm(), 1e-12);
+  }
+  const auto& edge = leaflet.groups.at("end2");
+  const Vec3 middle = leaflet.points[edge[8]] - upright.origin;
+  EXPECT_NEAR(middle.x(), 2.5, 1e-12);
+  EXPECT_NEAR(middle.y(), 0, 1e-12);
+  EXPECT_NEAR(middle.z(), 14, 1e-12);
+  const Vec3 tip = leaflet.points[edge[0]] - upright.origin;
+  EXPECT_NEAR(tip.head<2>().norm(), 12, 1e-12);
+  EXPECT_NEAR(std::atan2(tip.y(), tip.x()), -57 * M_PI / 180, 1e-12);
+}
+
+TEST(ValveShapes, TheLeafletsNormalPointsToTheAorta) {
+  const BodyMesh leaflet = sheet(leaflet_map(upright, sample(), {-1, 1}), {16, 8}, Pattern::alternating);
+  for (const Triangle& t : leaflet.triangles) {
+    const Vec3 &p = leaflet.points[t[0]], &q = leaflet.points[t[1]], &r = leaflet.points[t[2]];
+    const Vec3 outward((p + q + r) / 3 - upright.origin);
+    EXPECT_GT((q - p).cross(r - p).dot(Vec3(outward.x(), outward.y(), 12)), 0);
+  }
+}
+
+TEST(ValveShapes, AHalfEndsInTheSymmetryPlaneThroughItsWall) {
+  ValveShape v = sample();
+  v.wall = 0.4;
+  const BodyMesh half = block(leaflet_map({}, v, {0, 1}), {8, 8, 2}, structure::Shape::hex8);
+  for (int a : half.groups.at("start1")) EXPECT_NEAR(half.points[a].y(), 0, 1e-6);
+}
+
+TEST(ValveShapes, ThreeCrownsAndPostsCloseTheRing) {
+  ValveShape v = sample();
+  v.half_angle_deg = 60;
+  const BodyMesh crown = sheet(crown_map(upright, v, {-1, 1}), {16, 4}, Pattern::alternating);
+  const BodyMesh ring = repeated_round(crown, upright, 3);
+  EXPECT_EQ(ring.triangles.size(), 3 * crown.triangles.size());
+  EXPECT_EQ(ring.points.size(), 3 * crown.points.size() - 3 * 5) << "neighbours share their last column";
+  EXPECT_EQ(ring.groups.at("start2").size(), 3u * 16);
+  EXPECT_EQ(ring.groups.at("end2_2").size(), 17u);
+}
+
+TEST(ValveShapes, ImpossibleOnesAreRefused) {
+  ValveShape v = sample();
+  v.gap = 9;
+  test::expect_error(ExitCode::input, {"case.toml: [[body]] 'leaflet'", "gap is 9", "6.536"},
+                     [&] { check_valve(v, "case.toml: [[body]] 'leaflet'"); });
+  v = sample();
+  v.post = 0;
+  test::expect_error(ExitCode::input, {"post 0", "positive"}, [&] { check_valve(v, "x"); });
+}
+
+TEST(Generate, BilinearValuesMeetTheirPointsAndAreLinearBetween) {
+  const std::vector<double> values{1, 2, 4, 3, 5, 8};
+  EXPECT_EQ(bilinear(values, {3, 2}, 0, 0), 1);
+  EXPECT_EQ(bilinear(values, {3, 2}, 1, 1), 8);
+  EXPECT_EQ(bilinear(values, {3, 2}, 0.5, 0), 2);
+  EXPECT_EQ(bilinear(values, {3, 2}, 0.75, 0.5), 0.5 * (3 + 6.5));
+}
+
+TEST(Generate, NodesKnowTheirPlaceInTheGrid) {
+  for (const Pattern pattern : {Pattern::alternating, Pattern::crossed}) {
+    const BodyMesh mesh = sheet(plate_map({}, {4, 2, 0}, 0), {5, 3}, pattern);
+    ASSERT_EQ(mesh.fields.at("grid1").size(), mesh.points.size());
+    for (std::size_t a = 0; a < mesh.points.size(); ++a) {
+      EXPECT_NEAR(4 * mesh.fields.at("grid1")[a], mesh.points[a].x(), 1e-12);
+      EXPECT_NEAR(2 * mesh.fields.at("grid2")[a], mesh.points[a].y(), 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace valsalva::assembly
