@@ -1,8 +1,10 @@
-// Mesh files: gmsh .msh (2 and 4, ASCII or binary) and legacy .vtk through gmsh's library; .stl, .ply, .obj,
-// .off surfaces through CGAL (polygons are cut into triangles, equal corners merged).
+// Mesh files: gmsh .msh (2 and 4, ASCII or binary), legacy .vtk, Nastran .bdf, .unv and Medit .mesh through
+// gmsh's library; .stl, .ply, .obj, .off surfaces through CGAL (polygons are cut into triangles, equal
+// corners merged).
 //
-// gmsh: linear triangles and quadrangles (cut in two), lines, tet4, tet10, hex8, hex27. Physical groups
-// become groups of nodes; views with nodal data become fields.
+// gmsh: lines; triangles and quadrangles, cut into linear triangles at all of their nodes; tet4, tet10, hex8,
+// hex27; hex20, made complete; prisms and pyramids, cut into tet4. Other elements are refused. Physical
+// groups become groups of nodes; views with nodal data become fields.
 #pragma once
 
 #include <filesystem>

@@ -50,6 +50,8 @@ Integrator::Integrator(System& system, std::vector<std::shared_ptr<ForceTerm>> t
       settings_(settings),
       mass_(system.masses()),
       inertia_(system.inertias()),
+      carried_(system.nodes(), 0),
+      dt_(settings.step_s),
       stored_of_(terms_.size(), 0.0) {
   if (!(settings_.step_s > 0) || !(settings_.safety > 0) || settings_.safety > 1 ||
       settings_.scaling_interval < 1 || !(settings_.damping_per_s >= 0))
@@ -59,9 +61,19 @@ Integrator::Integrator(System& system, std::vector<std::shared_ptr<ForceTerm>> t
         settings_.step_s, settings_.safety, settings_.scaling_interval, settings_.damping_per_s);
 }
 
-void Integrator::step() {
-  for (const auto& term : terms_) term->begin_step(system_.state, settings_.step_s);
+void Integrator::add_rigid(std::shared_ptr<RigidBody> body) {
+  for (int a = body->body().begin(); a < body->body().end(); ++a) carried_[a] = 1;
+  rigid_.push_back(std::move(body));
+}
+
+double Integrator::prepare(double largest_s) {
+  for (const auto& term : terms_) term->begin_step(system_.state, dt_);
   bound_stiffness();
+  if (settings_.adaptive) choose_step(largest_s);
+  return dt_;
+}
+
+void Integrator::advance() {
   evaluate_forces();
   if (steps_ == 0) {
     energies_.stored_at_start = energies_.stored;
@@ -70,7 +82,8 @@ void Integrator::step() {
   move_nodes();
   turn_nodes();
   energies_.kinetic = kinetic_energy();
-  system_.state.time_s += settings_.step_s;
+  system_.state.time_s += dt_;
+  last_dt_ = dt_;
   ++steps_;
 }
 
@@ -100,7 +113,40 @@ void Integrator::bound_stiffness() {
   bound_ = smooth_;
   for (const auto& term : terms_)
     if (term->stiffness_is_abrupt()) term->add_stiffness_bound(system_.state, bound_);
-  scale_masses();
+  if (!settings_.adaptive) scale_masses();
+}
+
+void Integrator::choose_step(double largest_s) {
+  constexpr double growth = 1.1, collapse = 1e-5;
+  double most = 0;
+  std::string where;
+  for (std::size_t a = 0; a < mass_.size(); ++a)
+    if (!system_.held(static_cast<int>(a)) && bound_.translation[a] > most * mass_[a]) {
+      most = bound_.translation[a] / mass_[a];
+      where = system_.describe(static_cast<int>(a));
+    }
+  for (std::size_t r = 0; r < inertia_.size(); ++r)
+    if (!system_.held(system_.node_of_rotation(static_cast<int>(r))) &&
+        bound_.rotation[r] > most * inertia_[r]) {
+      most = bound_.rotation[r] / inertia_[r];
+      where = "the rotation of " + system_.describe(system_.node_of_rotation(static_cast<int>(r)));
+    }
+  for (const auto& body : rigid_)
+    if (const double ratio = body->largest_ratio(bound_); ratio > most) {
+      most = ratio;
+      where = "rigid body " + body->name();
+    }
+  dt_ = settings_.step_s;
+  if (most > 0) dt_ = std::min(dt_, 2 * settings_.safety / std::sqrt(most));
+  if (last_dt_ > 0) dt_ = std::min(dt_, growth * last_dt_);
+  if (first_dt_ == 0) first_dt_ = dt_;
+  if (!(dt_ > collapse * first_dt_))
+    throw NumericalFailure(
+        "structure: the stable step has fallen from {:.3g} to {:.3g} s at {:.6g} s because of {}: too much "
+        "load "
+        "or too fast an impact for its stiffness",
+        first_dt_, dt_, system_.state.time_s, where);
+  dt_ = std::min(dt_, largest_s);
 }
 
 void Integrator::scale_masses() {
@@ -132,14 +178,19 @@ void Integrator::scale_masses() {
 
 void Integrator::move_nodes() {
   Configuration& now = system_.state;
-  const double dt = settings_.step_s, damping = 0.5 * settings_.damping_per_s * dt;
+  const double dt = dt_, kick = kick_s(), damping = 0.5 * settings_.damping_per_s * kick;
+  if (!rigid_.empty()) {
+    std::vector<double> extra(mass_.size());
+    for (std::size_t a = 0; a < extra.size(); ++a) extra[a] = mass_[a] - system_.mass(static_cast<int>(a));
+    for (const auto& body : rigid_) body->advance(system_, forces_, extra, kick, dt, settings_.damping_per_s);
+  }
   for (std::size_t a = 0; a < mass_.size(); ++a) {
     const int node = static_cast<int>(a);
     if (system_.held(node)) {
-      energies_.support_work -= dt * forces_.force[a].dot(now.v[a]);
+      if (!carried_[a]) energies_.support_work -= dt * forces_.force[a].dot(now.v[a]);
     } else {
       const Vec3 before = now.v[a];
-      now.v[a] = ((1 - damping) * before + dt / mass_[a] * forces_.force[a]) / (1 + damping);
+      now.v[a] = ((1 - damping) * before + kick / mass_[a] * forces_.force[a]) / (1 + damping);
       Vec3 mean = 0.5 * (before + now.v[a]);
       if (system_.partly_held(node)) {
         const Mat3 held = system_.held_directions(node);
@@ -162,7 +213,7 @@ void Integrator::move_nodes() {
 
 void Integrator::turn_nodes() {
   Configuration& now = system_.state;
-  const double dt = settings_.step_s, damping = 0.5 * settings_.damping_per_s * dt;
+  const double dt = dt_, kick = kick_s(), damping = 0.5 * settings_.damping_per_s * kick;
   for (std::size_t r = 0; r < inertia_.size(); ++r) {
     const int node = system_.node_of_rotation(static_cast<int>(r));
     if (system_.held(node)) {
@@ -170,7 +221,7 @@ void Integrator::turn_nodes() {
     } else {
       const Vec3 before = now.angular_velocity[r];
       now.angular_velocity[r] =
-          ((1 - damping) * before + dt / inertia_[r] * forces_.moment[r]) / (1 + damping);
+          ((1 - damping) * before + kick / inertia_[r] * forces_.moment[r]) / (1 + damping);
       Vec3 mean = 0.5 * (before + now.angular_velocity[r]);
       if (system_.rotation_partly_held(static_cast<int>(r))) {
         const Mat3 held = system_.held_axes(static_cast<int>(r));
@@ -190,8 +241,13 @@ void Integrator::turn_nodes() {
   }
 }
 
+double Integrator::kick_s() const {
+  return settings_.adaptive ? 0.5 * (last_dt_ + dt_) : dt_;
+}
+
 double Integrator::kinetic_energy() const {
   double twice = 0;
+  for (const auto& body : rigid_) twice += 2 * body->kinetic_energy();
   for (std::size_t a = 0; a < mass_.size(); ++a) {
     const int node = static_cast<int>(a);
     if (system_.held(node)) continue;
@@ -220,14 +276,18 @@ double Integrator::mass_ratio() const {
 
 Vec3 Integrator::momentum() const {
   Vec3 total = Vec3::Zero();
-  for (std::size_t a = 0; a < mass_.size(); ++a) total += mass_[a] * system_.state.v[a];
+  for (std::size_t a = 0; a < mass_.size(); ++a)
+    if (!carried_[a]) total += mass_[a] * system_.state.v[a];
+  for (const auto& body : rigid_) total += body->momentum();
   return total;
 }
 
 Vec3 Integrator::angular_momentum() const {
   const Configuration& now = system_.state;
   Vec3 total = Vec3::Zero();
-  for (std::size_t a = 0; a < mass_.size(); ++a) total += mass_[a] * now.x[a].cross(now.v[a]);
+  for (std::size_t a = 0; a < mass_.size(); ++a)
+    if (!carried_[a]) total += mass_[a] * now.x[a].cross(now.v[a]);
+  for (const auto& body : rigid_) total += body->angular_momentum();
   for (std::size_t r = 0; r < inertia_.size(); ++r) total += inertia_[r] * now.angular_velocity[r];
   return total;
 }
@@ -249,6 +309,8 @@ Snapshot Integrator::save() const {
   s["energies"] = {energies_.kinetic,          energies_.stored,       energies_.stored_at_start,
                    energies_.kinetic_at_start, energies_.damping_work, energies_.support_work,
                    energies_.scaling_energy};
+  if (settings_.adaptive) s["steps"] = {dt_, last_dt_, first_dt_};
+  for (const auto& body : rigid_) s["rigid/" + body->name()] = body->save();
   std::vector<double>& held = s["held"];
   for (std::size_t a = 0; a < mass_.size(); ++a) held.push_back(system_.held(static_cast<int>(a)) ? 1 : 0);
   for (const auto& term : terms_)
@@ -274,6 +336,13 @@ void Integrator::restore(const Snapshot& s) {
   now.time_s = clock[0];
   steps_ = static_cast<long>(clock[1]);
   settings_.damping_per_s = clock[2];
+  if (settings_.adaptive) {
+    const std::vector<double>& steps = entry(s, "steps", 3);
+    dt_ = steps[0];
+    last_dt_ = steps[1];
+    first_dt_ = steps[2];
+  }
+  for (const auto& body : rigid_) body->restore(entry(s, "rigid/" + body->name(), 14));
   const std::vector<double>& e = entry(s, "energies", 7);
   energies_ = {e[0], e[1], e[2], e[3], e[4], e[5], e[6]};
   const std::vector<double>& held = entry(s, "held", nodes);

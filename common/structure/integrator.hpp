@@ -7,22 +7,31 @@
 // steps anew, in every step for terms whose stiffness is abrupt (contact). Sources: Belytschko, Liu and Moran
 // 2000, section 6.2; Simo and Vu-Quoc 1991 for the rotation update.
 //
+// Adaptive: the step follows the stable one, safety x 2/sqrt(max k_i/m_i), anew in every step (terms that are
+// not abrupt: every `scaling_interval` steps), grows by at most a tenth a step and ends where the caller
+// asks; the kick takes the mean of the steps before and after it, half a step at the start.
+//
+// Rigid bodies (structure/rigid_body.hpp) take part; their nodes follow them.
+//
 // Energy: kinetic (with scaled masses), stored (sum of the terms' energies), work of damping, of loads,
 // contact friction and supports; `Energies::imbalance` is zero up to the truncation error when all forces
 // have a potential. Alarm: a node that is not finite or faster than speed_limit is a NumericalFailure that
 // names body and node.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "structure/force_term.hpp"
+#include "structure/rigid_body.hpp"
 
 namespace valsalva::structure {
 
 struct IntegratorSettings {
-  double step_s = 1e-5;               ///< the target step
+  double step_s = 1e-5;               ///< the target step; adaptive: the largest
   bool mass_scaling = true;           ///< false: a too large step is refused
+  bool adaptive = false;              ///< instead of mass scaling or refusal
   double safety = 0.8;                ///< of the stability limit
   int scaling_interval = 50;          ///< steps between new stiffness bounds
   double damping_per_s = 0;           ///< alpha
@@ -51,8 +60,17 @@ class Integrator {
   Integrator(System& system, std::vector<std::shared_ptr<ForceTerm>> terms,
              const IntegratorSettings& settings);
 
+  void add_rigid(std::shared_ptr<RigidBody> body);
+
   /// One step, with the velocities of held nodes as they stand in the system's state.
-  void step();
+  void step() {
+    prepare();
+    advance();
+  }
+  /// Its two parts, for velocities of held nodes that depend on the step: prepare returns it (adaptive: at
+  /// most largest_s).
+  double prepare(double largest_s = std::numeric_limits<double>::infinity());
+  void advance();
   void set_damping(double per_s) { settings_.damping_per_s = per_s; }
   long steps() const { return steps_; }
   const Energies& energies() const { return energies_; }
@@ -76,8 +94,10 @@ class Integrator {
   void evaluate_forces();
   void bound_stiffness();
   void scale_masses();
+  void choose_step(double largest_s);
   void move_nodes();
   void turn_nodes();
+  double kick_s() const;
   double kinetic_energy() const;
 
   System& system_;
@@ -86,6 +106,9 @@ class Integrator {
   Forces forces_;
   StiffnessBound smooth_, bound_;  // without and with the abrupt terms
   std::vector<double> mass_, inertia_;
+  std::vector<std::shared_ptr<RigidBody>> rigid_;
+  std::vector<std::uint8_t> carried_;  // by a rigid body
+  double dt_, last_dt_ = 0, first_dt_ = 0;
   std::vector<double> stored_of_;
   Energies energies_;
   long steps_ = 0;

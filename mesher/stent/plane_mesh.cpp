@@ -1,30 +1,18 @@
 #include "plane_mesh.hpp"
 
-#include <gmsh.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "core/errors.hpp"
+#include "geometry/gmsh_session.hpp"
 
 namespace valsalva::stent {
 
 namespace {
 
 constexpr double smallest_acceptable_deg = 10;
-
-struct Session {
-  Session() {
-    gmsh::initialize(0, nullptr, false);
-    gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::option::setNumber("General.NumThreads", 1);
-  }
-  ~Session() { gmsh::finalize(); }
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
-};
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -68,7 +56,7 @@ PlaneMesh mesh_polygon(const std::vector<Vec2>& boundary, const std::vector<Vec2
   PlaneMesh mesh;
   const int n = static_cast<int>(boundary.size()), given = n + static_cast<int>(inner.size());
   try {
-    const Session session;
+    const geometry::GmshSession session;
     gmsh::option::setNumber("Mesh.Algorithm", 6);
     gmsh::option::setNumber("Mesh.MeshSizeMax", edge_mm);
     gmsh::option::setNumber("Mesh.Smoothing", 10);
