@@ -33,13 +33,14 @@ class Builder {
                                : Kind::rigid;
     b.density = real("density_g_per_mm3");
     b.velocity = vector("velocity_mm_per_s");
+    b.spin = vector("spin_rad_per_s");
     try {
       b.mesh = mesh(b.kind);
       b.half_thickness.assign(b.mesh.points.size(), 0);
       if (b.kind == Kind::shell) make_shell(b);
       if (b.kind == Kind::solid) make_solid(b);
       if (b.kind == Kind::beams) make_beams(b);
-      if (b.kind == Kind::rigid) b.half_thickness.assign(b.mesh.points.size(), 0.5 * real("thickness_mm"));
+      if (b.kind == Kind::rigid) make_rigid(b);
     } catch (const InputError& error) {
       const std::string message = error.what();
       if (message.starts_with(what_)) throw;
@@ -93,10 +94,11 @@ class Builder {
     }
     const Frame frame = frame_of(vector("origin_mm"), vector("direction1"), vector("direction2"), what_);
     if (kind == Kind::beams) {
-      if (shape == "line") return curve(plate_map(frame, {list("size_mm", 1)[0], 0, 0}, 0), divisions(1)[0]);
+      if (shape == "line")
+        return curve(plate_map(frame, {list("size_mm", 1)[0], 0, 0}, 0), divisions(1)[0], sewn());
       if (shape == "arc")
         return curve(cylinder_map(frame, positive_real("radius_mm"), range("angle_deg"), 0, 0),
-                     divisions(1)[0]);
+                     divisions(1)[0], sewn());
       refuse();
     }
     const bool solid = kind == Kind::solid;
@@ -105,10 +107,10 @@ class Builder {
     const Map map = map_of(frame, shape, solid);
     if (!solid) {
       const auto n = divisions(2);
-      return copied(sheet(map, {n[0], n[1]}, pattern()), frame);
+      return copied(sheet(map, {n[0], n[1]}, pattern(), sewn()), frame);
     }
     const auto n = divisions(3);
-    return copied(block(map, {n[0], n[1], n[2]}, element()), frame);
+    return copied(block(map, {n[0], n[1], n[2]}, element(), sewn()), frame);
   }
 
   BodyMesh copied(BodyMesh mesh, const Frame& frame) const {
@@ -122,6 +124,7 @@ class Builder {
   }
 
   Map plain_map(const Frame& frame, const std::string& shape, bool solid) const {
+    if (shape == "corners") return corner_map(corners(solid ? 8 : 4));
     const double wall = solid && shape != "box" ? positive_real("wall_mm") : 0;
     if (shape == "leaflet") return leaflet_map(frame, valve(wall), part());
     if (shape == "crown") return crown_map(frame, valve(wall), part());
@@ -129,8 +132,18 @@ class Builder {
       return cylinder_map(frame, positive_real("radius_mm"), range("angle_deg"), list("size_mm", 1)[0], wall);
     if (shape == "sphere")
       return sphere_map(frame, positive_real("radius_mm"), range("angle_deg"), range("polar_deg"), wall);
+    if (shape == "annulus")
+      return annulus_map(frame, real("radius_mm"), range("angle_deg"), list("size_mm", 1)[0], wall);
     const auto size = list("size_mm", solid ? 3 : 2);
     return plate_map(frame, {size[0], size[1], solid ? size[2] : 0}, real("twist_deg"));
+  }
+
+  bool sewn() const { return in_.boolean("body.sewn"); }
+  Points corners(std::size_t count) const {
+    const auto v = list("corners_mm", 3 * count);
+    Points x;
+    for (std::size_t c = 0; c < count; ++c) x.emplace_back(v[3 * c], v[3 * c + 1], v[3 * c + 2]);
+    return x;
   }
 
   ValveShape valve(double wall) const {
@@ -258,10 +271,50 @@ class Builder {
     mesh.width_mm.assign(mesh.elements.size(), width);
     mesh.depth_mm.assign(mesh.elements.size(), depth);
     mesh.depth_axis.assign(mesh.elements.size(), vector("depth_direction"));
+    if (real("torsion_mm4") > 0) mesh.torsion_mm4.assign(mesh.elements.size(), real("torsion_mm4"));
+    if (real("shear_area_mm2") > 0) mesh.shear_area_mm2.assign(mesh.elements.size(), real("shear_area_mm2"));
     b.half_thickness.assign(b.mesh.points.size(), 0.5 * std::min(width, depth));
-    b.beams = std::make_shared<structure::BeamNetwork>(
-        std::move(mesh),
-        structure::BeamMaterial{positive_real("young_kPa") * units::pa_per_kPa, real("poisson"), b.density});
+    structure::BeamMaterial material;
+    material.density_g_per_mm3 = b.density;
+    material.superelastic = superelastic_of(in_, what_);
+    if (material.superelastic) {
+      const auto& grid = in_.reals("body.fibre_grid");
+      material.fibres = {static_cast<int>(grid[0]), static_cast<int>(grid[1]), static_cast<int>(grid[2])};
+    } else {
+      if (!text("material").empty() || (!text("law").empty() && text("law") != "linear"))
+        throw InputError(
+            "{}: found material '{}' and law '{}'; expected young_kPa, or law = \"superelastic\"", what_,
+            text("material"), text("law"));
+      material.young_Pa = positive_real("young_kPa") * units::pa_per_kPa;
+      material.poisson = real("poisson");
+    }
+    b.beams = std::make_shared<structure::BeamNetwork>(std::move(mesh), material);
+  }
+
+  void make_rigid(BuiltBody& b) const {
+    b.half_thickness.assign(b.mesh.points.size(), 0.5 * real("thickness_mm"));
+    if (text("motion") == "fixed") return;
+    const auto& centre = in_.reals("body.centre_mm");
+    const auto& inertia = in_.reals("body.inertia_g_mm2");
+    structure::RigidProperties p;
+    if (real("mass_g") > 0 && !centre.empty() && !inertia.empty()) {
+      p.mass_g = real("mass_g");
+    } else {
+      p = structure::properties_of(b.mesh.points, b.mesh.triangles, b.density, what_);
+      if (real("mass_g") > 0) {
+        p.inertia *= real("mass_g") / p.mass_g;
+        p.mass_g = real("mass_g");
+      }
+    }
+    if (!centre.empty()) {
+      const auto c = list("centre_mm", 3);
+      p.centre = {c[0], c[1], c[2]};
+    }
+    if (!inertia.empty()) {
+      const auto i = list("inertia_g_mm2", 6);
+      p.inertia << i[0], i[3], i[5], i[3], i[1], i[4], i[5], i[4], i[2];
+    }
+    b.free = p;
   }
 
   const Case& scene_;
@@ -302,6 +355,14 @@ std::vector<Triangle> BuiltBody::surface() const {
   return triangles;
 }
 
+std::vector<Edge> BuiltBody::border() const {
+  if (kind == Kind::beams) return mesh.lines;
+  std::vector<Edge> edges;
+  for (const auto& [element, place] : border_edges(mesh.triangles))
+    edges.push_back({mesh.triangles[element][place], mesh.triangles[element][(place + 1) % 3]});
+  return edges;
+}
+
 std::vector<double> BuiltBody::surface_area() const {
   std::vector<double> area(mesh.points.size(), 0.0);
   for (const Triangle& t : surface()) {
@@ -327,7 +388,8 @@ std::vector<double> BuiltBody::mass() const {
     case Kind::rigid:
       break;
   }
-  return std::vector<double>(mesh.points.size(), density);  // held: no mass takes part in the motion
+  // Held: no mass takes part in the motion; a free body's is shared out for the sums over nodes.
+  return std::vector<double>(mesh.points.size(), free ? free->mass_g / mesh.points.size() : density);
 }
 
 std::shared_ptr<structure::ForceTerm> add_to_system(BuiltBody& b, structure::System& system) {
@@ -338,12 +400,24 @@ std::shared_ptr<structure::ForceTerm> add_to_system(BuiltBody& b, structure::Sys
         b.beams->lumped_inertia());
   else
     b.at = system.add_body(b.name, b.mesh.points, b.mass());
-  for (int a = b.at.begin(); a < b.at.end(); ++a) {
-    system.state.v[a] = b.velocity;
-    if (b.kind == Kind::rigid) {
-      system.state.v[a].setZero();
-      system.hold(a);
+  if (b.kind == Kind::rigid) {
+    for (int a = b.at.begin(); a < b.at.end(); ++a) system.hold(a);
+    if (b.free) {
+      b.rigid = std::make_shared<structure::RigidBody>(system, b.at, *b.free);
+      b.rigid->set_velocity(b.velocity, b.spin);
     }
+    return nullptr;
+  }
+  Vec3 centre = Vec3::Zero();
+  double mass = 0;
+  for (int a = b.at.begin(); a < b.at.end(); ++a) {
+    centre += system.mass(a) * system.state.x[a];
+    mass += system.mass(a);
+  }
+  centre /= mass;
+  for (int a = b.at.begin(); a < b.at.end(); ++a) {
+    system.state.v[a] = b.velocity + b.spin.cross(system.state.x[a] - centre);
+    if (const int r = system.rotation_of(a); r >= 0) system.state.angular_velocity[r] = b.spin;
   }
   if (b.shell) return std::make_shared<structure::ShellTerm>(b.shell, b.at);
   if (b.beams) return std::make_shared<structure::BeamTerm>(b.beams, b.at);

@@ -50,8 +50,8 @@ double extent(const BodyMesh& mesh) {
 }
 
 /// Sewn where the map closes upon itself.
-BodyMesh sewn(const BodyMesh& mesh) {
-  return compacted(merged(mesh, 1e-9 * extent(mesh)));
+BodyMesh sewn(const BodyMesh& mesh, bool sew) {
+  return sew ? compacted(merged(mesh, 1e-9 * extent(mesh))) : mesh;
 }
 
 int permutation_sign(const std::array<int, 3>& p) {
@@ -114,6 +114,26 @@ Map sphere_map(const Frame& frame, double radius, std::array<double, 2> angle_de
   };
 }
 
+Map annulus_map(const Frame& frame, double radius, std::array<double, 2> angle_deg, double width,
+                double wall) {
+  return [=](const Vec3& s) {
+    const double a = between(angle_deg, s.x()), r = radius + s.y() * width;
+    return frame.at(Vec3(r * std::cos(a), r * std::sin(a), -s.z() * wall));
+  };
+}
+
+Map corner_map(const Points& corners) {
+  return [=](const Vec3& s) {
+    Vec3 x = Vec3::Zero();
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const bool far1 = c % 4 == 1 || c % 4 == 2, far2 = c % 4 >= 2, far3 = c >= 4;
+      const double third = corners.size() == 4 ? 1 : far3 ? s.z() : 1 - s.z();
+      x += (far1 ? s.x() : 1 - s.x()) * (far2 ? s.y() : 1 - s.y()) * third * corners[c];
+    }
+    return x;
+  };
+}
+
 Map graded(Map map, const Vec3& ratio) {
   if (ratio == Vec3::Ones()) return map;
   return [=](const Vec3& s) {
@@ -124,13 +144,13 @@ Map graded(Map map, const Vec3& ratio) {
   };
 }
 
-BodyMesh curve(const Map& map, int divisions) {
+BodyMesh curve(const Map& map, int divisions, bool sew) {
   BodyMesh mesh = Grid{{divisions + 1, 1, 1}}.mesh(map, 1);
   for (int i = 0; i < divisions; ++i) mesh.lines.push_back({i, i + 1});
-  return sewn(mesh);
+  return sewn(mesh, sew);
 }
 
-BodyMesh sheet(const Map& map, std::array<int, 2> divisions, Pattern pattern) {
+BodyMesh sheet(const Map& map, std::array<int, 2> divisions, Pattern pattern, bool sew) {
   const Grid grid{{divisions[0] + 1, divisions[1] + 1, 1}};
   BodyMesh mesh = grid.mesh(map, 2);
   for (int j = 0; j < divisions[1]; ++j)
@@ -156,10 +176,10 @@ BodyMesh sheet(const Map& map, std::array<int, 2> divisions, Pattern pattern) {
         mesh.triangles.push_back({b, c, d});
       }
     }
-  return sewn(mesh);
+  return sewn(mesh, sew);
 }
 
-BodyMesh block(const Map& map, std::array<int, 3> divisions, structure::Shape shape) {
+BodyMesh block(const Map& map, std::array<int, 3> divisions, structure::Shape shape, bool sew) {
   using structure::Shape;
   const bool quadratic = shape == Shape::tet10 || shape == Shape::hex27;
   const bool hexahedra = shape == Shape::hex8 || shape == Shape::hex27;
@@ -192,7 +212,7 @@ BodyMesh block(const Map& map, std::array<int, 3> divisions, structure::Shape sh
                         r[1] * t[2].cast<double>() + r[2] * t[3].cast<double>());
           });
       }
-  return sewn(mesh);
+  return sewn(mesh, sew);
 }
 
 BodyMesh repeated_round(const BodyMesh& mesh, const Frame& frame, int copies) {
@@ -218,7 +238,7 @@ BodyMesh repeated_round(const BodyMesh& mesh, const Frame& frame, int copies) {
     for (const auto& [name, values] : mesh.fields)
       all.fields[name].insert(all.fields[name].end(), values.begin(), values.end());
   }
-  return sewn(all);
+  return sewn(all, true);
 }
 
 double bilinear(const std::vector<double>& values, std::array<int, 2> count, double u, double v) {

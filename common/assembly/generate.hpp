@@ -5,10 +5,13 @@
 //   plate     origin + u e1 + v e2
 //   cylinder  radius (cos a e1 + sin a e2) + z e3         grid: azimuth, height
 //   sphere    radius (sin p (cos a e1 + sin a e2) + cos p e3)   grid: azimuth, polar angle; pole nodes merge
+//   annulus   r (cos a e1 + sin a e2), r from the radius by its width   grid: azimuth, outwards
+//   corners   bilinear between 4 corners, trilinear between 8
 //   line, arc e1; radius (cos a e1 + sin a e2)
 // Solids have a third grid direction: the box its third length, cylinder and sphere the wall outwards.
-// A closed azimuth (360 degrees) is sewn; triangles and solids are outward (plate: along e3). The nodal fields
-// "grid1", "grid2", "grid3" hold each node's place in the grid, from 0 to 1.
+// Nodes that coincide are sewn, as at a closed azimuth and at a pole, unless this is declined; triangles and
+// solids are outward (plate: along e3). The nodal fields "grid1", "grid2", "grid3" hold each node's place in
+// the grid, from 0 to 1.
 #pragma once
 
 #include <functional>
@@ -37,22 +40,28 @@ Map cylinder_map(const Frame& frame, double radius, std::array<double, 2> angle_
 Map sphere_map(const Frame& frame, double radius, std::array<double, 2> angle_deg,
                std::array<double, 2> polar_deg, double wall);
 
+/// Normal (azimuth x outwards) and wall along -e3.
+Map annulus_map(const Frame& frame, double radius, std::array<double, 2> angle_deg, double width,
+                double wall);
+/// Corners of [0, 1]^2 counter-clockwise, or those of the bottom and then those of the top.
+Map corner_map(const Points& corners);
+
 /// Element sizes along each direction of the grid in geometric progression: the last over the first is the
 /// ratio (in the limit of many elements); 1: even.
 Map graded(Map map, const Vec3& ratio);
 
 enum class Pattern { alternating, right, left, crossed };
 
-BodyMesh curve(const Map& map, int divisions);
-BodyMesh sheet(const Map& map, std::array<int, 2> divisions, Pattern pattern);
-BodyMesh block(const Map& map, std::array<int, 3> divisions, structure::Shape shape);
+BodyMesh curve(const Map& map, int divisions, bool sew = true);
+BodyMesh sheet(const Map& map, std::array<int, 2> divisions, Pattern pattern, bool sew = true);
+BodyMesh block(const Map& map, std::array<int, 3> divisions, structure::Shape shape, bool sew = true);
 
-/// The mesh and its copies turned evenly about the frame's third axis, sewn where they meet. A group holds the
-/// nodes of all copies; "<group>_1" those of the first, and so on.
+/// The mesh and its copies turned evenly about the frame's third axis, sewn where they meet. A group holds
+/// the nodes of all copies; "<group>_1" those of the first, and so on.
 BodyMesh repeated_round(const BodyMesh& mesh, const Frame& frame, int copies);
 
-/// Values on count[0] x count[1] evenly spaced points of the unit square, the first direction running fastest;
-/// at least two points each way.
+/// Values on count[0] x count[1] evenly spaced points of the unit square, the first direction running
+/// fastest; at least two points each way.
 double bilinear(const std::vector<double>& values, std::array<int, 2> count, double u, double v);
 
 }  // namespace valsalva::assembly

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/errors.hpp"
 #include "solve/implicit.hpp"
@@ -51,47 +52,69 @@ double dividing(double end_s, double largest) {
   return end_s / std::ceil(end_s / largest * (1 - 1e-12));
 }
 
-/// A step that the integrator refuses after the start is a failure of the numerics, not of the input.
-template <class Work>
-void guarded(const Work& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    throw NumericalFailure("{}; give dynamics.step_s, or a smaller dynamics.safety", error.what());
+/// Rows of the history at even times.
+class RowClock {
+ public:
+  RowClock(double end_s, long rows) : interval_(end_s / static_cast<double>(rows)) {}
+  bool due(double before_s, double now_s) const {
+    return std::floor(now_s / interval_ * (1 + 1e-12)) > std::floor(before_s / interval_ * (1 + 1e-12));
   }
+
+ private:
+  double interval_;
+};
+
+double kinetic_of(const Scene& scene) {
+  const structure::System& system = *scene.system;
+  double twice = 0;
+  for (std::size_t a = 0; a < system.nodes(); ++a)
+    if (!system.held(static_cast<int>(a)))
+      twice += system.mass(static_cast<int>(a)) * system.state.v[a].squaredNorm();
+  for (std::size_t r = 0; r < system.rotational_nodes(); ++r)
+    twice += system.inertia(static_cast<int>(r)) * system.state.angular_velocity[r].squaredNorm();
+  for (const auto& body : scene.rigid) twice += 2 * body->kinetic_energy();
+  return 0.5 * twice;
 }
 
 class Explicit : public March {
  public:
-  Explicit(const Settings& s, Scene& scene)
-      : s_(s), scene_(scene), step_(step_of(s, scene)), drive_(scene.supports, *scene.system) {
+  Explicit(const Settings& s, Scene& scene) : s_(s), scene_(scene), drive_(scene), rows_(s.end_s, s.rows) {
     structure::IntegratorSettings in;
-    in.step_s = step_;
     in.mass_scaling = s.mass_scaling;
-    in.safety = s.mass_scaling ? s.safety : 1;  // what is refused is a step beyond the limit itself
+    in.adaptive = !s.mass_scaling;
+    in.step_s = s.step_s > 0 ? s.step_s : s.mass_scaling ? s.safety * stable_step_s(scene) : 1e-3 * s.end_s;
+    in.step_s = s.mass_scaling ? dividing(s.end_s, in.step_s) : in.step_s;
+    in.safety = s.safety;
     in.scaling_interval = 20;
     in.damping_per_s = s.damping;
     in.speed_limit_mm_per_s = s.speed_limit;
     integrator_ = std::make_unique<structure::Integrator>(*scene.system, scene.terms, in);
-    total_ = std::lround(s.end_s / step_);
-    interval_ = std::max(1L, (total_ + s.rows - 1) / s.rows);
+    for (const auto& body : scene.rigid) integrator_->add_rigid(body);
   }
   void step() override {
-    guarded([&] {
-      drive_.set_velocities(*scene_.system, (steps_ + 1) * step_, step_);
-      integrator_->step();
-      scene_.system->state.time_s = (steps_ + 1) * step_;
-    });
-    for (const auto& contact : scene_.body_contacts) contact->limit_velocities(*scene_.system, step_);
+    structure::System& system = *scene_.system;
+    const double before = system.state.time_s, left = s_.end_s - before;
+    const double dt = integrator_->prepare(std::min(left, reachable_s()));
+    const bool last = dt >= left * (1 - 1e-9);
+    const double next = last ? s_.end_s : before + dt;
+    drive_.set_velocities(system, next, dt);
+    integrator_->advance();
+    system.state.time_s = next;
+    shortest_ = std::min(shortest_, dt);
+    longest_ = std::max(longest_, dt);
+    row_ = last || rows_.due(before, next);
     ++steps_;
   }
-  bool finished() const override { return steps_ >= total_; }
-  bool row_due() const override { return steps_ % interval_ == 0 || finished(); }
-  double kinetic_nJ() const override { return integrator_->energies().kinetic; }
+  bool finished() const override { return scene_.system->state.time_s >= s_.end_s; }
+  bool row_due() const override { return row_; }
+  double kinetic_nJ() const override {
+    return steps_ == 0 ? kinetic_of(scene_) : integrator_->energies().kinetic;
+  }
   double stored_nJ() const override { return integrator_->energies().stored; }
   std::map<std::string, double> metrics() const override {
     const auto& e = integrator_->energies();
-    return {{"step_s", step_},
+    return {{"step_min_s", shortest_},
+            {"step_max_s", longest_},
             {"mass_ratio", integrator_->mass_ratio()},
             {"load_work_nJ", e.load_work()},
             {"damping_work_nJ", e.damping_work},
@@ -99,34 +122,95 @@ class Explicit : public March {
   }
 
  private:
-  static double step_of(const Settings& s, const Scene& scene) {
-    return dividing(s.end_s, s.step_s > 0 ? s.step_s : s.safety * stable_step_s(scene));
+  /// No node goes farther in a step than a fifth of the distance at which bodies meet.
+  double reachable_s() const {
+    double fastest = 0;
+    if (!std::isfinite(scene_.contact_reach_mm)) return scene_.contact_reach_mm;
+    for (const Vec3& v : scene_.system->state.v) fastest = std::max(fastest, v.norm());
+    return fastest > 0 ? 0.2 * scene_.contact_reach_mm / fastest : std::numeric_limits<double>::infinity();
   }
-  Snapshot save_solver() const override { return integrator_->save(); }
-  void restore_solver(const Snapshot& snapshot) override { integrator_->restore(snapshot); }
+  Snapshot save_solver() const override {
+    Snapshot s = integrator_->save();
+    s["steps_taken"] = {shortest_, longest_, row_ ? 1.0 : 0.0};
+    return s;
+  }
+  void restore_solver(const Snapshot& s) override {
+    integrator_->restore(s);
+    const auto& own = s.at("steps_taken");
+    shortest_ = own.at(0);
+    longest_ = own.at(1);
+    row_ = own.at(2) != 0;
+  }
 
   Settings s_;
   Scene& scene_;
-  double step_;
   Drive drive_;
+  RowClock rows_;
   std::unique_ptr<structure::Integrator> integrator_;
-  long total_ = 0, interval_ = 1;
+  double shortest_ = 1e300, longest_ = 0;
+  bool row_ = false;
 };
 
 class QuasiStatic : public March {
  public:
-  QuasiStatic(const Settings& s, Scene& scene) : s_(s), scene_(scene), drive_(scene.supports, *scene.system) {
+  QuasiStatic(const Settings& s, Scene& scene)
+      : s_(s),
+        scene_(scene),
+        drive_(scene),
+        carried_(scene.system->nodes(), 0),
+        increment_(s.end_s / s.load_steps) {
+    for (const auto& body : scene.rigid)
+      std::fill(carried_.begin() + body->body().begin(), carried_.begin() + body->body().end(), 1);
     structure::IntegratorSettings in;
     in.step_s = 1;  // a pseudo step: velocities are lengths an iteration
     in.scaling_interval = 20;
     in.speed_limit_mm_per_s = s.speed_limit;
     integrator_ = std::make_unique<structure::Integrator>(*scene.system, scene.terms, in);
+    for (const auto& body : scene.rigid) integrator_->add_rigid(body);
   }
 
   void step() override {
+    if (in_step_ == 0) rest_ = integrator_->save();
+    row_ = false;
+    ++steps_;
+    try {
+      iterate();
+    } catch (const NumericalFailure& failure) {
+      halve(failure.what());
+      return;
+    }
+    if (in_step_ > ramp && in_step_ % 20 == 0 && at_rest())
+      settled();
+    else if (in_step_ >= s_.max_iterations)
+      halve(
+          fmt::format("no rest after {} iterations: unbalanced force {:.3g} of the load (limit {:.3g}), "
+                      "kinetic over stored energy {:.3g} (limit {:.3g})",
+                      in_step_, unbalanced_, tolerance(), integrator_->energies().ratio(), s_.energy_ratio));
+  }
+  bool finished() const override { return equilibrium_s_ >= s_.end_s; }
+  bool row_due() const override { return row_; }
+  double kinetic_nJ() const override { return integrator_->energies().kinetic; }
+  double stored_nJ() const override { return integrator_->energies().stored; }
+  std::map<std::string, double> metrics() const override {
+    return {{"unbalanced_force_ratio", unbalanced_},
+            {"kinetic_to_stored_ratio_max", largest_},
+            {"halved_steps", static_cast<double>(halvings_)}};
+  }
+
+ private:
+  static constexpr long ramp = 100;         // iterations over which a load step is brought on
+  static constexpr double smallest = 1e-3;  // of a load step
+  double tolerance() const { return s_.residual > 0 ? s_.residual : 1e-4; }
+  double target() const {
+    const double next = equilibrium_s_ + increment_;
+    return next > s_.end_s * (1 - 1e-9) ? s_.end_s : next;
+  }
+
+  void iterate() {
     structure::System& system = *scene_.system;
-    const double from = time(load_step_), to = time(load_step_ + 1);
-    const auto at = [&](long i) { return from + (to - from) * std::min(1.0, double(i) / ramp); };
+    const auto at = [&](long i) {
+      return i >= ramp ? target() : equilibrium_s_ + (target() - equilibrium_s_) * double(i) / ramp;
+    };
     system.state.time_s = at(in_step_);
     drive_.set_velocities(system, at(in_step_ + 1), 1);
     integrator_->step();
@@ -134,42 +218,39 @@ class QuasiStatic : public March {
     for (const auto& contact : scene_.body_contacts) contact->limit_velocities(system, 1);
     damp();
     ++in_step_;
-    ++steps_;
-    row_ = false;
-    if (in_step_ > ramp && in_step_ % 20 == 0 && at_rest()) {
-      row_ = true;
-      in_step_ = 0;
-      ++load_step_;
-      largest_ = std::max(largest_, integrator_->energies().ratio());
-    } else if (in_step_ >= s_.max_iterations) {
-      throw NumericalFailure(
-          "quasi_static: no rest at load time {:.6g} s after {} iterations: unbalanced force {:.3g} of the "
-          "load "
-          "(limit {:.3g}), kinetic over stored energy {:.3g} (limit {:.3g}); take more load_steps or "
-          "max_iterations",
-          to, in_step_, unbalanced_, tolerance(), integrator_->energies().ratio(), s_.energy_ratio);
-    }
-  }
-  bool finished() const override { return load_step_ >= s_.load_steps; }
-  bool row_due() const override { return row_; }
-  double kinetic_nJ() const override { return integrator_->energies().kinetic; }
-  double stored_nJ() const override { return integrator_->energies().stored; }
-  std::map<std::string, double> metrics() const override {
-    return {{"unbalanced_force_ratio", unbalanced_}, {"kinetic_to_stored_ratio_max", largest_}};
   }
 
- private:
-  static constexpr long ramp = 100;  // iterations over which a load step is brought on
-  double time(long load_step) const { return s_.end_s * static_cast<double>(load_step) / s_.load_steps; }
-  double tolerance() const { return s_.residual > 0 ? s_.residual : 1e-4; }
+  void settled() {
+    row_ = true;
+    in_step_ = 0;
+    equilibrium_s_ = target();
+    largest_ = std::max(largest_, integrator_->energies().ratio());
+    increment_ = std::min(2 * increment_, s_.end_s / s_.load_steps);
+  }
+
+  void halve(const std::string& why) {
+    integrator_->restore(rest_);
+    force_.clear();
+    velocity_.clear();
+    in_step_ = 0;
+    increment_ /= 2;
+    ++halvings_;
+    if (increment_ < smallest * s_.end_s / s_.load_steps)
+      throw NumericalFailure(
+          "quasi_static: no equilibrium beyond the load time {:.6g} s, step {:.3g} s: {}; take more "
+          "load_steps "
+          "or max_iterations",
+          equilibrium_s_, 2 * increment_, why);
+  }
 
   void damp() {
     const structure::System& system = *scene_.system;
     const Points& force = integrator_->forces().force;
     double work = 0, inertia = 0;
     for (std::size_t a = 0; a < force_.size(); ++a) {
-      if (system.held(static_cast<int>(a))) continue;
-      const Mat3 free = Mat3::Identity() - system.held_directions(static_cast<int>(a));
+      if (system.held(static_cast<int>(a)) && !carried_[a]) continue;
+      const Mat3 held = carried_[a] ? Mat3::Zero() : system.held_directions(static_cast<int>(a));
+      const Mat3 free = Mat3::Identity() - held;
       const Vec3 v = free * velocity_[a];
       work -= (force[a] - force_[a]).dot(v);
       inertia += integrator_->mass(static_cast<int>(a)) * v.squaredNorm();
@@ -188,15 +269,26 @@ class QuasiStatic : public March {
     for (const auto& term : scene_.loads) term->add_forces(system.state, load);
     double free = 0, held = 0, applied = 0;
     Vec3 low = system.state.x.front(), high = low;
+    for (const Vec3& x : system.state.x) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    const double length = std::max((high - low).norm(), 1e-9);
+    for (const auto& body : scene_.rigid) {
+      const Vec3 weight = body->weight(system.state.time_s), force = body->force(f) + weight;
+      const Vec3 torque = body->torque(system, f) / length;
+      applied += weight.squaredNorm();
+      held += (body->held() * force).squaredNorm() + (body->held_spin() * torque).squaredNorm();
+      free +=
+          (force - body->held() * force).squaredNorm() + (torque - body->held_spin() * torque).squaredNorm();
+    }
     for (std::size_t a = 0; a < f.force.size(); ++a) {
+      if (carried_[a]) continue;
       const Vec3 part = system.held_directions(static_cast<int>(a)) * f.force[a];
       held += part.squaredNorm();
       free += (f.force[a] - part).squaredNorm();
       applied += load.force[a].squaredNorm();
-      low = low.cwiseMin(system.state.x[a]);
-      high = high.cwiseMax(system.state.x[a]);
     }
-    const double length = std::max((high - low).norm(), 1e-9);
     for (std::size_t r = 0; r < f.moment.size(); ++r) {
       const Vec3 part = system.held_axes(static_cast<int>(r)) * f.moment[r];
       held += part.squaredNorm() / (length * length);
@@ -211,21 +303,25 @@ class QuasiStatic : public March {
 
   Snapshot save_solver() const override {
     Snapshot s = integrator_->save();
-    s["relaxation"] = {double(load_step_), double(in_step_), unbalanced_, largest_, row_ ? 1.0 : 0.0};
+    s["relaxation"] = {equilibrium_s_, increment_,        double(in_step_), unbalanced_,
+                       largest_,       double(halvings_), row_ ? 1.0 : 0.0};
     for (const Vec3& f : force_)
       s["relaxation_force"].insert(s["relaxation_force"].end(), {f[0], f[1], f[2]});
     for (const Vec3& v : velocity_)
       s["relaxation_velocity"].insert(s["relaxation_velocity"].end(), {v[0], v[1], v[2]});
+    for (const auto& [name, values] : rest_) s["rest/" + name] = values;
     return s;
   }
   void restore_solver(const Snapshot& s) override {
     integrator_->restore(s);
     const auto& own = s.at("relaxation");
-    load_step_ = static_cast<long>(own.at(0));
-    in_step_ = static_cast<long>(own.at(1));
-    unbalanced_ = own.at(2);
-    largest_ = own.at(3);
-    row_ = own.at(4) != 0;
+    equilibrium_s_ = own.at(0);
+    increment_ = own.at(1);
+    in_step_ = static_cast<long>(own.at(2));
+    unbalanced_ = own.at(3);
+    largest_ = own.at(4);
+    halvings_ = static_cast<int>(own.at(5));
+    row_ = own.at(6) != 0;
     const auto points = [&](const char* name) {
       Points p;
       if (const auto found = s.find(name); found != s.end())
@@ -235,14 +331,21 @@ class QuasiStatic : public March {
     };
     force_ = points("relaxation_force");
     velocity_ = points("relaxation_velocity");
+    rest_.clear();
+    for (const auto& [name, values] : s)
+      if (name.starts_with("rest/")) rest_[name.substr(5)] = values;
   }
 
   Settings s_;
   Scene& scene_;
   Drive drive_;
+  std::vector<std::uint8_t> carried_;  // nodes of free rigid bodies
   std::unique_ptr<structure::Integrator> integrator_;
   Points force_, velocity_;  // of the iteration before
-  long load_step_ = 0, in_step_ = 0;
+  Snapshot rest_;            // the integrator at the last equilibrium
+  double equilibrium_s_ = 0, increment_;
+  long in_step_ = 0;
+  int halvings_ = 0;
   double unbalanced_ = 0, largest_ = 0;
   bool row_ = false;
 };
@@ -363,6 +466,12 @@ void March::restore(const Snapshot& snapshot) {
 
 std::unique_ptr<March> make_march(const Case& scene, Scene& built) {
   const Settings s(scene);
+  const bool newton = s.solver == "static" || s.solver == "implicit";
+  if (newton && !built.rigid.empty())
+    throw InputError(
+        "{}: dynamics.solver = \"{}\" with the free rigid body '{}'; expected \"explicit\" or "
+        "\"quasi_static\"",
+        scene.file().string(), s.solver, built.rigid.front()->name());
   if (s.solver == "explicit") return std::make_unique<Explicit>(s, built);
   if (s.solver == "quasi_static") return std::make_unique<QuasiStatic>(s, built);
   if (s.solver == "static") return std::make_unique<Static>(s, built);

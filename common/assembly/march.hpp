@@ -1,10 +1,12 @@
 // Advances a scene: one interface over the four solvers of [dynamics].
 //
-//   explicit      central differences (structure/integrator.hpp); one step is one time step
+//   explicit      central differences (structure/integrator.hpp), with the stable step of every moment, at
+//                 most step_s; one step is one time step. Velocities stand half a step behind positions
 //   quasi_static  load steps; each is brought to rest by dynamic relaxation: masses scaled to a unit pseudo
 //                 step, damping 2 omega with omega^2 the Rayleigh quotient of the present motion (Underwood
 //                 1983). At rest: unbalanced force <= residual x force of loads and supports, and kinetic <=
-//                 energy_ratio x stored energy. One step is one iteration
+//                 energy_ratio x stored energy. A load step that finds no rest is halved, and doubled again
+//                 after one that does. One step is one iteration
 //   static        load steps by Newton (solve/statics.hpp); one step is one load step
 //   implicit      generalised-alpha (solve/implicit.hpp)
 // Loads and prescribed motions are functions of the system's time; static solvers go through it to end_s.

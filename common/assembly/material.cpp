@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <charconv>
 #include <cmath>
+#include <map>
 
 #include "core/errors.hpp"
 #include "core/units.hpp"
@@ -100,6 +101,37 @@ materials::MaterialSet material_of(const Case& body, const std::string& what) {
     throw InputError("{}: {}", what, error.what());
   }
   return set;
+}
+
+std::shared_ptr<const materials::Superelastic> superelastic_of(const Case& body, const std::string& what) {
+  const std::string &name = body.text("body.material"), &law = body.text("body.law");
+  if (name.empty() && law != "superelastic") return nullptr;
+  try {
+    if (!name.empty() && !law.empty())
+      throw InputError("found both material and law; expected exactly one of them");
+    if (!name.empty()) return std::make_shared<materials::Superelastic>(materials::superelastic_set(name));
+    materials::SuperelasticParameters p;
+    const std::map<std::string, double*> known{{"austenite_Pa", &p.austenite_Pa},
+                                               {"martensite_Pa", &p.martensite_Pa},
+                                               {"poisson", &p.poisson},
+                                               {"transformation_strain", &p.transformation_strain},
+                                               {"loading_start_Pa", &p.loading_start_Pa},
+                                               {"loading_finish_Pa", &p.loading_finish_Pa},
+                                               {"unloading_start_Pa", &p.unloading_start_Pa},
+                                               {"unloading_finish_Pa", &p.unloading_finish_Pa},
+                                               {"compression_start_Pa", &p.compression_start_Pa}};
+    std::string names;
+    for (const auto& [key, value] : known) names += (names.empty() ? "" : ", ") + key;
+    for (const auto& [key, value] : parameters_of(body.texts("body.law_parameters"), what)) {
+      if (!known.contains(key))
+        throw InputError("law_parameters: found '{}', expected any of {}", key, names);
+      *known.at(key) = value;
+    }
+    if (p.compression_start_Pa == 0) p.compression_start_Pa = p.loading_start_Pa;
+    return std::make_shared<materials::Superelastic>(p);
+  } catch (const InputError& error) {
+    throw InputError("{}: {}", what, error.what());
+  }
 }
 
 std::shared_ptr<const materials::PlaneLaw> scaled(std::shared_ptr<const materials::PlaneLaw> law,

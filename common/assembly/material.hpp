@@ -7,12 +7,17 @@
 #include "assembly/mesh.hpp"
 #include "core/case.hpp"
 #include "materials/library.hpp"
+#include "materials/superelastic.hpp"
 
 namespace valsalva::assembly {
 
 /// material = a name of the library; or law and law_parameters; or law = "linear" with young_kPa and poisson
 /// (St. Venant-Kirchhoff: large rotation, small strain). InputError with `what`, which names file and entry.
 materials::MaterialSet material_of(const Case& body, const std::string& what);
+
+/// The law of superelastic beams: law = "superelastic" with law_parameters, or material = the name of a
+/// published set; null for any other law without a material.
+std::shared_ptr<const materials::Superelastic> superelastic_of(const Case& body, const std::string& what);
 
 /// Multiplies energy, stress and tangent of a plane law.
 std::shared_ptr<const materials::PlaneLaw> scaled(std::shared_ptr<const materials::PlaneLaw> law,

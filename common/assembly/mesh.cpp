@@ -73,4 +73,17 @@ BodyMesh merged(const BodyMesh& mesh, double tolerance_mm) {
   return out;
 }
 
+std::vector<std::array<int, 2>> border_edges(const std::vector<Triangle>& triangles) {
+  std::map<std::array<int, 2>, std::vector<std::array<int, 2>>> users;
+  for (std::size_t e = 0; e < triangles.size(); ++e)
+    for (int k = 0; k < 3; ++k) {
+      const int a = triangles[e][k], b = triangles[e][(k + 1) % 3];
+      users[{std::min(a, b), std::max(a, b)}].push_back({static_cast<int>(e), k});
+    }
+  std::vector<std::array<int, 2>> alone;
+  for (const auto& [edge, list] : users)
+    if (list.size() == 1) alone.push_back(list.front());
+  return alone;
+}
+
 }  // namespace valsalva::assembly

@@ -31,4 +31,7 @@ BodyMesh compacted(const BodyMesh& mesh);
 /// Nodes nearer than the tolerance become one (the first); triangles and lines that lose a side are dropped.
 BodyMesh merged(const BodyMesh& mesh, double tolerance_mm);
 
+/// Edges with one triangle: the triangle, and the edge's place in it.
+std::vector<std::array<int, 2>> border_edges(const std::vector<Triangle>& triangles);
+
 }  // namespace valsalva::assembly

@@ -4,12 +4,21 @@
 //                                  rotation vector of the mean node's turn since the reference
 //   velocity                mm/s
 //   reaction                N      sum of the forces by which a support holds the body
+//   reaction_moment         N_mm   the same of their moments about a point, moments on beam nodes included
 //   contact_force           N      sum of the forces of a contact pair on its first body
+//   contact_area            mm2    area of the nodes that touch a rigid surface
+//   penetration             mm     largest overlap with a rigid surface, or of two bodies' contact distance
 //   energies                nJ     kinetic: of all; stored: of all, or of one body, tie, tether or pair
-//   stretch                 1      largest principal stretch of a body (beams: 1 + largest strain)
-//   von_mises               kPa    largest von Mises stress of a body (Cauchy)
+//   momentum                g_mm_per_s, angular_momentum (about a point) g_mm2_per_s   of a body, or of all
+//   stretch                 ratio  principal stretch (beams: 1 + largest strain): the largest of a body, or
+//   that
+//                                  nearest to a point of the reference
+//   von_mises, stress       kPa    Cauchy; likewise. Shells: von Mises only
+//   volume                  mm3    enclosed by a body's surface, or that of a volume load
+//   pressure                kPa    of a volume load
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,10 +38,17 @@ class Probes {
   struct Probe {
     std::string name, quantity, of, component, statistic;
     Vec3 direction;
+    std::optional<Vec3> point;
   };
   struct Present;
   double value(const Probe& probe, const Scene& scene, Present& present, double kinetic_nJ) const;
+  static void check(const Probe& probe, const Scene& built, const std::string& what);
   double of_vectors(const Probe& probe, const Points& vectors) const;
+  double of_elements(const Probe& probe, const Scene& scene) const;
+  double of_solid(const Probe& probe, const BuiltBody& body, const structure::Configuration& now) const;
+  double penetration(const Probe& probe, const Scene& scene) const;
+  double of_support(const Probe& probe, const Scene& scene, Present& present) const;
+  double of_motion(const Probe& probe, const Scene& scene) const;
 
   std::vector<Probe> probes_;
   std::vector<std::string> columns_;

@@ -7,6 +7,12 @@ namespace valsalva::assembly {
 RigidShape::Near RigidShape::near(const Vec3& x) const {
   Vec3 d = x - point;
   if (kind == Kind::plane) return {direction.dot(d), direction};
+  if (kind == Kind::level_set) {
+    const double sign = inside ? -1 : 1;
+    const Vec3 slope = level_set->gradient(x);
+    const double size = slope.norm();
+    return {sign * level_set->value(x), size > 1e-6 ? Vec3(sign / size * slope) : Vec3(Vec3::Zero())};
+  }
   if (kind == Kind::cylinder) d -= direction.dot(d) * direction;
   const double r = d.norm(), sign = inside ? -1 : 1;
   const Vec3 normal = r > 0 ? Vec3(sign / r * d) : Vec3(Vec3::Zero());
@@ -68,9 +74,23 @@ void RigidSurfaceContact::add_tangent(const structure::Configuration& now,
     const double area = nodes_[i].area_mm2;
     const Mat3 normal = t.normal * t.normal.transpose();
     Mat3 k = parameters_.normal_Pa_per_mm * area * normal;
-    if (tethers_.engaged(i)) k += tethers_.stiffness(area) * (Mat3::Identity() - normal);
+    if (tethers_.engaged(i)) {
+      const Vec3 friction = tethers_.force(i, t.place, t.normal, t.force, area);
+      const double limit = tethers_.friction() * t.force;
+      if (friction.norm() < (1 - 1e-9) * limit)
+        k += tethers_.stiffness(area) * (Mat3::Identity() - normal);
+      else
+        k += parameters_.normal_Pa_per_mm * area / t.force * friction * t.normal.transpose();
+    }
     out.add(nodes_[i].node, nodes_[i].node, k);
   }
+}
+
+double RigidSurfaceContact::area_mm2(const structure::Configuration& now) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    if (touch(i, now).force > 0) sum += nodes_[i].area_mm2;
+  return sum;
 }
 
 double RigidSurfaceContact::penetration_mm(const structure::Configuration& now) const {

@@ -1,24 +1,30 @@
-// Contact of nodes with a rigid analytic surface that may be moved, with Coulomb friction.
+// Contact of nodes with a rigid surface that may be moved, analytic or given by a level set, with Coulomb
+// friction.
 //
 // Distance d(x) on the free side: plane n.(x - p); sphere |x - p| - R, cylinder |(1 - a a)(x - p)| - R (signs
-// reversed for bodies inside). Overlap g = r - d, energy A K_n g^2 / 2, force A K_n g n; friction with the
-// tethers of contact/surface_nodes.hpp, in the frame that moves with the surface (which does not turn). The
-// tangent is exact for the normal force on a plane, without the curvature of the surface otherwise; friction
-// counts as the stiffness of its tethers while they hold. mm, uN, Pa/mm.
+// reversed for bodies inside), level set phi(x). Overlap g = r - d, energy A K_n g^2 / 2, force A K_n g n;
+// friction with the tethers of contact/surface_nodes.hpp, in the frame that moves with the surface (which
+// does not turn). The tangent is exact on a plane, without the curvature of the surface otherwise; friction
+// counts as the stiffness of its tethers while they hold, and as mu times that of the normal force when they
+// slip (unsymmetric). A level set's gradient is that of its smoothed interpolant, as in
+// contact/wall_contact.hpp. mm, uN, Pa/mm.
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "contact/surface_nodes.hpp"
+#include "geometry/grid_sdf.hpp"
 #include "structure/force_term.hpp"
 
 namespace valsalva::assembly {
 
 struct RigidShape {
-  enum class Kind { plane, sphere, cylinder } kind = Kind::plane;
+  enum class Kind { plane, sphere, cylinder, level_set } kind = Kind::plane;
   Vec3 point = Vec3::Zero(), direction = Vec3::UnitZ();  ///< direction: unit
   double radius = 0;
   bool inside = false;
+  std::shared_ptr<const geometry::GridSdf> level_set;
   struct Near {
     double distance;
     Vec3 normal;  ///< to the free side; zero on the axis or centre
@@ -40,6 +46,8 @@ class RigidSurfaceContact : public structure::ForceTerm {
   structure::Snapshot save() const override { return tethers_.save(); }
   void restore(const structure::Snapshot& snapshot) override { tethers_.restore(snapshot, name_); }
   double penetration_mm(const structure::Configuration& now) const;
+  /// Of the nodes that touch.
+  double area_mm2(const structure::Configuration& now) const;
 
  private:
   struct Touch {

@@ -2,6 +2,7 @@
 // docs/case-file.md lists the tables.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -10,6 +11,7 @@
 #include "assembly/body.hpp"
 #include "assembly/rigid_surface.hpp"
 #include "assembly/supports.hpp"
+#include "assembly/volume_load.hpp"
 #include "contact/body_contact.hpp"
 #include "core/case.hpp"
 
@@ -26,7 +28,15 @@ struct Scene {
   std::map<std::string, std::shared_ptr<structure::ForceTerm>>
       named;                                      ///< bodies, ties, tethers, contact pairs
   std::map<std::string, std::string> first_body;  ///< of a contact pair
+  std::map<std::string, std::shared_ptr<RigidSurfaceContact>> surfaces;  ///< contact with rigid surfaces
+  std::map<std::string, std::shared_ptr<VolumeLoad>> volumes;
+  std::vector<std::shared_ptr<structure::RigidBody>> rigid;           ///< that move freely
+  double contact_reach_mm = std::numeric_limits<double>::infinity();  ///< least contact distance of bodies
   double end_s = 1;
+
+  /// InputError with `what` when the name is taken.
+  void add_term(const std::string& name, std::shared_ptr<structure::ForceTerm> term, const std::string& what);
+  const BuiltBody& body_of(int node) const;
 
   const BuiltBody& body(const std::string& name, const std::string& what) const;
   const std::vector<int>& set(const std::string& name, const std::string& what) const;

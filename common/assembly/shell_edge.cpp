@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 namespace valsalva::assembly {
@@ -19,27 +18,13 @@ double flexural_rigidity(const BuiltBody& body, int triangle) {
   return factor * body.bending_Pa * t * t * t / (12 * (1 - nu * nu));
 }
 
-/// Edges with one triangle: the triangle, and the edge's place in it.
-std::vector<std::array<int, 2>> border(const std::vector<Triangle>& triangles) {
-  std::map<std::array<int, 2>, std::vector<std::array<int, 2>>> users;
-  for (std::size_t e = 0; e < triangles.size(); ++e)
-    for (int k = 0; k < 3; ++k) {
-      const int a = triangles[e][k], b = triangles[e][(k + 1) % 3];
-      users[{std::min(a, b), std::max(a, b)}].push_back({static_cast<int>(e), k});
-    }
-  std::vector<std::array<int, 2>> alone;
-  for (const auto& [edge, list] : users)
-    if (list.size() == 1) alone.push_back(list.front());
-  return alone;
-}
-
 }  // namespace
 
 ShellEdgeTerm::ShellEdgeTerm(const BuiltBody& body, const Support& support)
     : name_("edge of " + body.name + " at " + support.name), motion_(support.motion) {
   const std::set<int> held(support.nodes.begin(), support.nodes.end());
   const Points& x = body.mesh.points;
-  for (const auto& [element, place] : border(body.mesh.triangles)) {
+  for (const auto& [element, place] : border_edges(body.mesh.triangles)) {
     const Triangle& t = body.mesh.triangles[element];
     const int a = t[place], b = t[(place + 1) % 3], c = t[(place + 2) % 3], o = body.at.offset;
     if (!held.contains(a + o) || !held.contains(b + o)) continue;

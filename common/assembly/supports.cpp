@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "assembly/scene.hpp"
 #include "core/errors.hpp"
 
 namespace valsalva::assembly {
@@ -27,8 +28,8 @@ Mat3 Motion::turn(double time_s) const {
 }
 
 Vec3 Motion::place(const Vec3& reference, double time_s) const {
-  Vec3 x = reference;
-  if (turn_rad != 0) x = turn_point + turn(time_s) * (reference - turn_point);
+  Vec3 x = reference + factor(time_s) * (gradient * (reference - turn_point));
+  if (turn_rad != 0) x = turn_point + turn(time_s) * (x - turn_point);
   return x + factor(time_s) * displacement;
 }
 
@@ -54,14 +55,25 @@ void TetherTerm::add_tangent(const structure::Configuration&, structure::BlockMa
   for (int a : support_.nodes) out.add(a, a, support_.tether_uN_per_mm * held_);
 }
 
-void hold(const Support& s, structure::System& system) {
-  if (s.tether_uN_per_mm > 0) return;
+void hold(const Support& s, const BuiltBody& body, structure::System& system) {
+  const Vec3 tangent = s.normal.unitOrthogonal();
+  if (body.rigid) {
+    if (s.symmetry) {
+      body.rigid->hold_along(s.normal);
+      body.rigid->hold_about(tangent);
+      body.rigid->hold_about(s.normal.cross(tangent));
+    }
+    for (int d = 0; d < 3; ++d) {
+      if (s.translation[d]) body.rigid->hold_along(Vec3::Unit(d));
+      if (s.rotation[d]) body.rigid->hold_about(Vec3::Unit(d));
+    }
+    return;
+  }
   for (int a : s.nodes) {
     const int r = system.rotation_of(a);
     if (s.symmetry) {
       system.hold_along(a, s.normal);
       if (r < 0) continue;
-      const Vec3 tangent = s.normal.unitOrthogonal();
       system.hold_about(r, tangent);
       system.hold_about(r, s.normal.cross(tangent));
       continue;
@@ -76,29 +88,35 @@ void hold(const Support& s, structure::System& system) {
 solve::Supports prescribed_motion(const std::vector<Support>& supports, const structure::System& system) {
   solve::Supports out;
   for (const Support& s : supports) {
-    if (s.tether_uN_per_mm > 0 || !s.motion.moves()) continue;
+    if (!s.holds_nodes() || !s.motion.moves()) continue;
     for (int a : s.nodes) {
-      if (system.rotation_of(a) >= 0 && s.motion.turn_rad != 0)
-        throw InputError(
-            "[[support]] '{}': beam nodes cannot be turned by the static and implicit solvers; expected "
-            "solver = "
-            "\"explicit\" or \"quasi_static\"",
-            s.name);
       const Vec3 reference = system.state.x[a];
       for (int d = 0; d < 3; ++d)
         if (s.translation[d])
           out.move(a, d,
                    [m = s.motion, reference, d](double t) { return (m.place(reference, t) - reference)[d]; });
+      const int r = system.rotation_of(a);
+      const int turned = s.rotation[0] + s.rotation[1] + s.rotation[2];
+      if (r < 0 || s.motion.turn_rad == 0 || turned == 0) continue;
+      if (turned < 3)
+        throw InputError(
+            "[[support]] '{}': the static and implicit solvers turn beam nodes as a whole; expected rx, ry "
+            "and "
+            "rz in hold, or solver = \"explicit\" or \"quasi_static\"",
+            s.name);
+      out.turn(r, [m = s.motion](double t) { return m.turn(t); });
     }
   }
   return out;
 }
 
-Drive::Drive(const std::vector<Support>& supports, const structure::System& system) {
-  for (const Support& s : supports)
-    if (s.motion.moves() && !(s.tether_uN_per_mm > 0)) {
+Drive::Drive(const Scene& scene) {
+  for (const Support& s : scene.supports)
+    if (s.motion.moves() && s.holds_nodes()) {
       supports_.push_back(s);
-      reference_.push_back(reference_of(s, system));
+      rigid_.push_back(scene.body_of(s.nodes.front()).rigid);
+      reference_.push_back(rigid_.back() ? Points{rigid_.back()->properties().centre}
+                                         : reference_of(s, *scene.system));
     }
 }
 
@@ -109,6 +127,10 @@ void Drive::set_velocities(structure::System& system, double next_s, double dt_s
     const Mat3 held = held_of(s);
     const Vec3 spin = s.motion.turn_rad * (s.motion.factor(next_s) - s.motion.factor(now.time_s)) / dt_s *
                       s.motion.turn_axis.normalized();
+    if (rigid_[k]) {
+      rigid_[k]->drive((s.motion.place(reference_[k][0], next_s) - rigid_[k]->centre()) / dt_s, spin);
+      continue;
+    }
     for (std::size_t i = 0; i < s.nodes.size(); ++i) {
       const int a = s.nodes[i];
       const Vec3 wanted = (s.motion.place(reference_[k][i], next_s) - now.x[a]) / dt_s;

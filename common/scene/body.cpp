@@ -5,23 +5,30 @@ namespace {
 
 void declare_mesh_keys(Schema& schema) {
   schema.choice(
-      "body.shape", "file", {"file", "plate", "cylinder", "sphere", "box", "line", "arc", "leaflet", "crown"},
+      "body.shape", "file",
+      {"file", "plate", "box", "corners", "cylinder", "sphere", "annulus", "line", "arc", "leaflet", "crown"},
       "Where the mesh comes from: a file, or generated in the frame origin, direction1, direction2");
   schema.text("body.file", "",
-              "Mesh file: .msh (gmsh), .vtk (legacy), .stl, .ply, .obj or .off, for shape = \"file\"");
+              "Mesh file: .msh (gmsh), .vtk (legacy), .bdf, .unv, .mesh, .stl, .ply, .obj or .off");
   schema.text("body.group", "", "Physical group of the file that holds the elements; empty: all");
   schema.real("body.scale_to_mm", 1, positive(), "Factor on the coordinates of the file");
   schema.reals("body.origin_mm", {0, 0, 0}, 3, unlimited(), "Origin of the generated shape's frame");
   schema.reals("body.direction1", {1, 0, 0}, 3, unlimited(), "First axis of that frame");
   schema.reals("body.direction2", {0, 1, 0}, 3, unlimited(),
                "Second axis, made normal to the first; the third is their cross product");
-  schema.reals("body.size_mm", {}, 0, positive(),
-               "plate: length and width; box: three lengths; cylinder: height; line: length");
+  schema.reals(
+      "body.size_mm", {}, 0, positive(),
+      "plate: length and width; box: three lengths; cylinder: height; annulus: its width; line: length");
+  schema.reals(
+      "body.corners_mm", {}, 0, unlimited(),
+      "corners: 4 points of a sheet, counter-clockwise, or 8 of a solid (bottom, then top), in space");
+  schema.boolean("body.sewn", true, "Generated shapes: is a full turn closed? false leaves a slit");
   schema.reals(
       "body.divisions", {}, 0, {1, 1e5},
       "Elements along size_mm; cylinder and sphere: round, along; line, arc: one number; solids: three");
-  schema.real("body.radius_mm", 0, not_negative(), "Radius of cylinder, sphere, arc (inner one of a solid)");
-  schema.real("body.wall_mm", 0, not_negative(), "Thickness of a solid cylinder or sphere");
+  schema.real("body.radius_mm", 0, not_negative(),
+              "Radius of cylinder, sphere, arc (inner one of a solid, of an annulus)");
+  schema.real("body.wall_mm", 0, not_negative(), "Thickness of a solid cylinder, sphere or annulus");
   schema.reals("body.angle_deg", {0, 360}, 2, {-360, 360},
                "Azimuth from direction1 towards direction2, from and to");
   schema.reals("body.polar_deg", {0, 180}, 2, {0, 180}, "sphere: angle from the third axis, from and to");
@@ -50,9 +57,13 @@ void declare_mesh_keys(Schema& schema) {
 
 void declare_material_keys(Schema& schema) {
   schema.text("body.material", "", "Name of a published material (valsalva-material --list); or give law");
-  schema.text("body.law", "",
-              "Name of an elastic law (valsalva-material --laws); \"linear\": young, poisson");
+  schema.text(
+      "body.law", "",
+      "Name of an elastic law (valsalva-material --laws); \"linear\": young, poisson; beams: \"linear\" or "
+      "\"superelastic\"");
   schema.texts("body.law_parameters", {}, "Its parameters, each as text \"key = value\"");
+  schema.reals("body.fibre_grid", {5, 5, 2}, 3, {1, 20},
+               "Superelastic beams: points over width and depth, stations along an element");
   schema.real("body.young_kPa", 0, not_negative(), "Young's modulus of the linear law and of beams");
   schema.real("body.poisson", 0.3, {0, 0.5}, "Poisson number of the linear law and of beams");
   schema.choice("body.volumetric", "none", {"none", "j-ln-j", "quadratic", "logarithmic", "simo-taylor"},
@@ -94,8 +105,22 @@ void declare_body(Schema& schema) {
   schema.real("body.width_mm", 0, not_negative(), "Beams: section across depth_direction");
   schema.real("body.depth_mm", 0, not_negative(), "Beams: section along depth_direction");
   schema.reals("body.depth_direction", {0, 0, 1}, 3, unlimited(), "Beams: direction of the depth");
+  schema.real("body.torsion_mm4", 0, not_negative(), "Beams: torsion constant; 0: the rectangle's");
+  schema.real("body.shear_area_mm2", 0, not_negative(),
+              "Beams: area for shear, 5/6 of a rectangle's; 0: no shear flexibility");
   declare_material_keys(schema);
   schema.reals("body.velocity_mm_per_s", {0, 0, 0}, 3, unlimited(), "Velocity at the start");
+  schema.reals("body.spin_rad_per_s", {0, 0, 0}, 3, unlimited(),
+               "Spin about its centre of mass at the start");
+  schema.choice(
+      "body.motion", "fixed", {"fixed", "free"},
+      "rigid: fixed, unless supports move it; free: six degrees of freedom (explicit, quasi_static)");
+  schema.real("body.mass_g", 0, not_negative(),
+              "rigid, free: its mass; 0: of its closed surface, filled with density_g_per_mm3");
+  schema.reals("body.inertia_g_mm2", {}, 0, unlimited(),
+               "rigid, free: xx, yy, zz, xy, yz, zx about the centre; empty: of the uniform inside");
+  schema.reals("body.centre_mm", {}, 0, unlimited(),
+               "rigid, free: centre of mass; empty: of the uniform inside");
 }
 
 void declare_nodes(Schema& schema) {
@@ -103,8 +128,12 @@ void declare_nodes(Schema& schema) {
   schema.text("nodes.name", "", "Its name");
   schema.text("nodes.body", "", "The body");
   schema.choice("nodes.select", "all",
-                {"all", "group", "box", "plane", "sphere", "cylinder", "nearest", "numbers"},
-                "group: physical group of the file; the others by place, within tolerance_mm");
+                {"all", "group", "box", "plane", "sphere", "cylinder", "nearest", "numbers", "border",
+                 "union", "intersection", "difference"},
+                "group: physical group of the file; border: edge of a sheet, surface of a solid; union, "
+                "intersection, difference: of sets; the others by place, within tolerance_mm");
+  schema.texts("nodes.sets", {},
+               "union, intersection: sets of nodes; difference: the first without the others");
   schema.text("nodes.group", "", "Name of the physical group");
   schema.reals("nodes.low_mm", {-1e9, -1e9, -1e9}, 3, unlimited(), "box: lower corner");
   schema.reals("nodes.high_mm", {1e9, 1e9, 1e9}, 3, unlimited(), "box: upper corner");
@@ -127,6 +156,8 @@ void declare_support(Schema& schema) {
                "symmetry: normal of the plane; holds the motion along it and rotations about its tangents");
   schema.reals("support.displacement_mm", {0, 0, 0}, 3, unlimited(),
                "Prescribed displacement of the held components at factor 1");
+  schema.reals("support.gradient", {}, 0, unlimited(),
+               "Nine numbers, row by row: adds gradient (X - turn_point_mm) to the displacement");
   schema.real("support.turn_deg", 0, unlimited(),
               "Prescribed turn about turn_axis at factor 1; hold = [\"all\"]");
   schema.reals("support.turn_axis", {0, 0, 1}, 3, unlimited(), "Axis of the turn");
@@ -141,14 +172,21 @@ void declare_load(Schema& schema) {
   schema.tables("load", "What pushes");
   schema.text("load.name", "", "Its name");
   schema.choice(
-      "load.kind", "force", {"force", "moment", "pressure", "traction", "gravity"},
-      "force, moment: dead, on nodes; pressure: follows the surface; traction: dead, per reference area");
+      "load.kind", "force", {"force", "moment", "pressure", "traction", "gravity", "volume"},
+      "force, moment: dead, on nodes (moment on a shell's edge: follows it); pressure: follows the surface; "
+      "traction: dead, per reference area; volume: the pressure that keeps an enclosed volume");
   schema.text("load.nodes", "", "force, moment: the set; pressure, traction: faces with all nodes in it");
   schema.text("load.body", "", "pressure, traction, gravity: the body; gravity: empty for all");
   schema.reals("load.force_N", {0, 0, 0}, 3, unlimited(), "force at factor 1");
-  schema.reals("load.moment_N_mm", {0, 0, 0}, 3, unlimited(), "moment at factor 1, on beam nodes");
-  schema.choice("load.share", "total", {"total", "node"},
-                "Is force or moment the sum over the set, or per node?");
+  schema.reals("load.moment_N_mm", {0, 0, 0}, 3, unlimited(),
+               "moment at factor 1, on beam nodes or along a shell's edge");
+  schema.choice("load.share", "total", {"total", "node", "length", "area"},
+                "force, moment: the sum over the set, evenly by node, by length of edge or beam, by area of "
+                "surface; node: on each node");
+  schema.real("load.volume_ratio", 1, positive(), "volume: wanted over reference volume, at factor 1");
+  schema.real("load.bulk_kPa", 1e4, positive(), "volume: pressure per relative volume that is missing");
+  schema.reals("load.point_mm", {0, 0, 0}, 3, unlimited(),
+               "volume: apex of the cones over the surface; with symmetry planes a point of all of them");
   schema.real("load.pressure_kPa", 0, unlimited(),
               "pressure at factor 1: pushes along the surface's normal (a solid: into the body)");
   schema.reals("load.traction_kPa", {0, 0, 0}, 3, unlimited(), "traction at factor 1");
@@ -175,13 +213,17 @@ void declare_contact_pair(Schema& schema) {
   schema.text("contact_pair.name", "", "Its name");
   schema.text("contact_pair.body", "", "The body");
   schema.text("contact_pair.other", "", "The other body; the same one: self contact; empty: the surface");
-  schema.choice("contact_pair.surface", "none", {"none", "plane", "sphere", "cylinder"},
-                "Rigid surface: plane (free side: its normal), sphere, endless cylinder");
+  schema.choice("contact_pair.surface", "none", {"none", "plane", "sphere", "cylinder", "level_set"},
+                "Rigid surface: plane (free side: its normal), sphere, endless cylinder, or a level set");
+  schema.text(
+      "contact_pair.file", "",
+      "level_set: closed surface (.stl, .ply, .obj, .off), or a state of segment or mesher (its lumen)");
+  schema.real("contact_pair.spacing_mm", 0.5, positive(), "level_set of a surface: spacing of its grid");
   schema.reals("contact_pair.point_mm", {0, 0, 0}, 3, unlimited(), "Point of the plane or axis, centre");
   schema.reals("contact_pair.direction", {0, 0, 1}, 3, unlimited(),
                "Normal of the plane, axis of the cylinder");
   schema.real("contact_pair.radius_mm", 0, not_negative(), "Radius of sphere or cylinder");
-  schema.boolean("contact_pair.inside", false, "Is the body inside the sphere or cylinder?");
+  schema.boolean("contact_pair.inside", false, "Is the body inside the sphere, cylinder or level set?");
   schema.reals("contact_pair.displacement_mm", {0, 0, 0}, 3, unlimited(),
                "Displacement of the rigid surface at factor 1");
   schema.reals("contact_pair.time_s", {}, 0, not_negative(), "Times of its factor table");
@@ -205,7 +247,7 @@ void declare_dynamics(Schema& schema) {
   schema.real("dynamics.end_s", 1, positive(),
               "End of the run; for static solvers the end of the load tables");
   schema.real("dynamics.step_s", 0, not_negative(),
-              "Time step; 0: explicit takes the stable one, implicit 1 % of end_s");
+              "Largest time step; 0: explicit takes the stable one, implicit 1 % of end_s");
   schema.real("dynamics.safety", 0.8, {0.01, 1}, "Of the stable step");
   schema.integer("dynamics.load_steps", 10, {1, 100000}, "Load steps of the static solvers");
   schema.real("dynamics.damping_per_s", 0, not_negative(),
@@ -227,15 +269,26 @@ void declare_dynamics(Schema& schema) {
 void declare_probe(Schema& schema) {
   schema.tables("probe", "A column of history.csv and a metric of summary.json, named by probe and unit");
   schema.text("probe.name", "", "Its name");
-  schema.choice("probe.quantity", "displacement",
-                {"displacement", "position", "velocity", "rotation", "reaction", "contact_force",
-                 "kinetic_energy", "stored_energy", "stretch", "von_mises"},
-                "What is measured");
-  schema.text("probe.of", "",
-              "displacement, position, velocity, rotation: node set; reaction: support; contact_force: "
-              "contact pair; stored_energy: body, tie or pair, empty for all; stretch, von_mises: body");
-  schema.choice("probe.component", "magnitude", {"x", "y", "z", "magnitude", "direction"},
-                "Component; direction: along probe.direction");
+  schema.choice(
+      "probe.quantity", "displacement",
+      {"displacement", "position", "velocity", "rotation", "reaction", "reaction_moment", "contact_force",
+       "contact_area", "penetration", "kinetic_energy", "stored_energy", "total_energy", "momentum",
+       "angular_momentum", "stretch", "von_mises", "stress", "volume", "pressure"},
+      "What is measured");
+  schema.text(
+      "probe.of", "",
+      "displacement, position, velocity, rotation: node set; reaction, reaction_moment: support; "
+      "contact_force, contact_area, penetration: contact pair; stored_energy: body, tie or pair, empty "
+      "for all; momentum, angular_momentum: body, empty for all; stretch, von_mises, stress: body; "
+      "volume: body, or volume load; pressure: volume load");
+  schema.choice("probe.component", "magnitude",
+                {"x", "y", "z", "magnitude", "direction", "xx", "yy", "zz", "xy", "yz", "zx", "principal_max",
+                 "principal_min", "mean"},
+                "Component; direction: along probe.direction; of stress (Cauchy): xx to mean");
+  schema.reals(
+      "probe.point_mm", {}, 0, unlimited(),
+      "stretch, von_mises, stress: at the element nearest to this point of the reference; empty: the "
+      "largest of the body; reaction_moment, angular_momentum: about this point; empty: the origin");
   schema.reals("probe.direction", {0, 0, 1}, 3, unlimited(), "For component = \"direction\"");
   schema.choice("probe.statistic", "mean", {"mean", "min", "max"}, "Over the nodes of the set");
 }

@@ -32,6 +32,11 @@ void Supports::move(int node, int component, Motion displacement) {
   entries_.push_back({node, component, false, std::move(displacement)});
 }
 
+void Supports::turn(int rotation, Turning rotated) {
+  fix_rotation(rotation);
+  turned_.push_back({rotation, std::move(rotated)});
+}
+
 Equations::Equations(structure::System& system, std::vector<std::shared_ptr<structure::ForceTerm>> terms,
                      const Supports& supports)
     : system_(system), terms_(std::move(terms)) {
@@ -62,6 +67,8 @@ Equations::Equations(structure::System& system, std::vector<std::shared_ptr<stru
     if (entry.motion)
       prescribed_.push_back({unknown, system.state.x[entry.index][entry.component], entry.motion});
   }
+  for (const Supports::Turned& t : supports.turned_)
+    turned_.push_back({t.rotation, system.state.rotation[t.rotation], t.turning});
   if (!system.state.x.empty()) {
     Vec3 low = system.state.x[0], high = low;
     for (const Vec3& x : system.state.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
@@ -141,6 +148,12 @@ Eigen::VectorXd Equations::missing(double time_s) const {
   Eigen::VectorXd gap = Eigen::VectorXd::Zero(unknowns());
   for (const Prescribed& p : prescribed_)
     gap[p.unknown] = p.start + p.motion(time_s) - system_.state.x[p.unknown / 3][p.unknown % 3];
+  for (const Turned& t : turned_) {
+    const Eigen::AngleAxisd spin(Eigen::Quaterniond(t.turning(time_s)) * t.start *
+                                 system_.state.rotation[t.rotation].conjugate());
+    const double angle = spin.angle() > M_PI ? spin.angle() - 2 * M_PI : spin.angle();
+    gap.segment<3>(3 * (static_cast<int>(system_.nodes()) + t.rotation)) = angle * spin.axis();
+  }
   return gap;
 }
 

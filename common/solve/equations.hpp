@@ -36,15 +36,23 @@ class Supports {
   void fix_rotation(int rotation, int component);
   /// From the node's position when the equations are set up.
   void move(int node, int component, Motion displacement);
+  /// All of a rotation: turned, in space, from where it is when the equations are set up.
+  using Turning = std::function<Mat3(double)>;  ///< of time (load factor)
+  void turn(int rotation, Turning rotated);
 
  private:
   friend class Equations;
+  struct Turned {
+    int rotation;
+    Turning turning;
+  };
   struct Entry {
     int index, component;
     bool rotation;
     Motion motion;
   };
   std::vector<Entry> entries_;
+  std::vector<Turned> turned_;
 };
 
 struct NewtonSettings {
@@ -84,7 +92,7 @@ class Equations {
   void tangent(structure::BlockMatrix& k) const;
   structure::BlockMatrix matrix() const { return {system_.nodes(), system_.rotational_nodes()}; }
   void move(const Eigen::VectorXd& increment);
-  /// Prescribed minus present positions where fixed, zero elsewhere.
+  /// Prescribed minus present positions (rotations: the spin that is missing) where fixed, zero elsewhere.
   Eigen::VectorXd missing(double time_s) const;
   /// Norm over the free unknowns, moments divided by the length.
   double norm(const Eigen::VectorXd& r) const;
@@ -102,6 +110,12 @@ class Equations {
     Supports::Motion motion;
   };
   std::vector<Prescribed> prescribed_;
+  struct Turned {
+    int rotation;
+    Eigen::Quaterniond start;
+    Supports::Turning turning;
+  };
+  std::vector<Turned> turned_;
   std::map<int, Mat3> frames_;  // of slots held along skew directions; columns: their axes
   void hold_along(int slot, const Mat3& projector);
   double length_ = 1;

@@ -81,6 +81,12 @@ void RigidBody::set_velocity(const Vec3& velocity, const Vec3& spin) {
   angular_momentum_ = properties_.inertia * spin;
 }
 
+Vec3 RigidBody::weight(double time_s) const {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& g : gravity_) sum += properties_.mass_g * g(time_s);
+  return sum;
+}
+
 void RigidBody::hold_along(const Vec3& direction) {
   widen(held_, direction);
 }
@@ -139,12 +145,11 @@ void RigidBody::advance(System& system, const Forces& forces, const std::vector<
     mass += extra_mass[a];
     extra_inertia_ += extra_mass[a] * arms_[a - body_.begin()].squaredNorm() * Mat3::Identity();
   }
-  const Vec3 g = gravity_ ? gravity_(system.state.time_s) : Vec3(Vec3::Zero());
+  const Vec3 heavy = weight(system.state.time_s);
   const Vec3 before = velocity_;
-  velocity_ = ((1 - damping) * before + kick_s * (force(forces) / mass + properties_.mass_g / mass * g)) /
-              (1 + damping);
+  velocity_ = ((1 - damping) * before + kick_s / mass * (force(forces) + heavy)) / (1 + damping);
   velocity_ += held_ * (driven_ - velocity_);
-  gravity_work_ += 0.5 * kick_s * properties_.mass_g * g.dot(before + velocity_);
+  gravity_work_ += 0.5 * kick_s * heavy.dot(before + velocity_);
   angular_momentum_ = ((1 - damping) * angular_momentum_ + kick_s * torque(system, forces)) / (1 + damping);
   angular_momentum_ -= held_spin_ * angular_momentum_;
 

@@ -40,8 +40,9 @@ class RigidBody {
 
   /// Velocity of the centre and spin, at the start.
   void set_velocity(const Vec3& velocity, const Vec3& spin);
-  /// Acceleration of gravity, of time.
-  void set_gravity(std::function<Vec3(double)> acceleration) { gravity_ = std::move(acceleration); }
+  /// A further acceleration of gravity, of time.
+  void add_gravity(std::function<Vec3(double)> acceleration) { gravity_.push_back(std::move(acceleration)); }
+  Vec3 weight(double time_s) const;
   /// Holds translation along, or rotation about, a direction in space.
   void hold_along(const Vec3& direction);
   void hold_about(const Vec3& axis);
@@ -55,6 +56,9 @@ class RigidBody {
   void advance(System& system, const Forces& forces, const std::vector<double>& extra_mass, double kick_s,
                double dt_s, double damping_per_s);
 
+  /// Projector on what is held of the translation, and of the rotation.
+  const Mat3& held() const { return held_; }
+  const Mat3& held_spin() const { return held_spin_; }
   const Vec3& centre() const { return centre_; }
   const Vec3& velocity() const { return velocity_; }
   const Eigen::Quaterniond& rotation() const { return rotation_; }
@@ -78,7 +82,7 @@ class RigidBody {
   Body body_;
   RigidProperties properties_;
   Points arms_;  // from the centre, in the axes of the start
-  std::function<Vec3(double)> gravity_;
+  std::vector<std::function<Vec3(double)>> gravity_;
   Mat3 held_ = Mat3::Zero(), held_spin_ = Mat3::Zero();
   Vec3 driven_ = Vec3::Zero(), driven_spin_ = Vec3::Zero();
   Vec3 centre_, velocity_ = Vec3::Zero(), angular_momentum_ = Vec3::Zero();
