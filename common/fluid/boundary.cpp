@@ -244,4 +244,19 @@ void fill_pressure_ghosts(const Slab& slab, const Boundaries& boundaries, Field&
   }
 }
 
+void fill_periodic_ghosts(const Slab& slab, Field& field, int layers) {
+  const int nx = slab.grid.cells[0], ny = slab.grid.cells[1];
+  for (int k = 0; k < slab.planes; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      double* row = field.row(j, k);
+      std::copy_n(row + nx - layers, layers, row - layers);
+      std::copy_n(row, layers, row + nx);
+    }
+    const std::ptrdiff_t count = layers * slab.stride_y;
+    std::copy_n(field.row(ny - layers, k) - ghosts, count, field.row(-layers, k) - ghosts);
+    std::copy_n(field.row(0, k) - ghosts, count, field.row(ny, k) - ghosts);
+  }
+  exchange_planes(slab, field, layers);
+}
+
 }  // namespace valsalva::fluid

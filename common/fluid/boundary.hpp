@@ -55,4 +55,7 @@ void fill_velocity_ghosts(const Slab& slab, const Boundaries& boundaries, FaceFi
 void fill_pressure_ghosts(const Slab& slab, const Boundaries& boundaries, Field& pressure,
                           const std::array<double, 2>& end_pressure);
 
+/// `layers` ghost layers of a field in a box that is periodic in all directions.
+void fill_periodic_ghosts(const Slab& slab, Field& field, int layers);
+
 }  // namespace valsalva::fluid

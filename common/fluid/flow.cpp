@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "fluid/fourth_order.hpp"
+#include "fluid/poisson.hpp"
+#include "fluid/poisson_periodic.hpp"
 
 namespace valsalva::fluid {
 
@@ -14,6 +17,14 @@ const Boundaries& checked(const Boundaries& boundaries) {
   return boundaries;
 }
 
+std::unique_ptr<PressureSolver> pressure_solver(const Slab& slab, const Boundaries& boundaries, int order) {
+  if (order == 2) return std::make_unique<Poisson>(slab, boundaries);
+  if (order != 4) throw InputError("fluid: order {} in space; expected 2 or 4", order);
+  if (!boundaries.periodic(0) || !boundaries.periodic(1) || !boundaries.periodic(2))
+    throw InputError("fluid: order 4 in space needs a box that is periodic in all directions; use order 2");
+  return std::make_unique<PeriodicPoisson>(slab, fourth_order::symbol);
+}
+
 }  // namespace
 
 Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const FlowParameters& parameters)
@@ -21,8 +32,9 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
       boundaries_(boundaries),
       parameters_(parameters),
       solids_(slab_, parameters.density),
-      momentum_(slab_, boundaries_, parameters.convection, parameters.viscosity / parameters.density),
-      poisson_(slab_, boundaries_),
+      momentum_(slab_, boundaries_, parameters.convection, parameters.viscosity / parameters.density,
+                parameters.order),
+      poisson_(pressure_solver(slab_, boundaries_, parameters.order)),
       velocity_(slab_),
       next_(slab_),
       rate_(slab_),
@@ -109,21 +121,48 @@ void Flow::apply_inflow(FaceField& velocity) const {
 }
 
 void Flow::predict(double dt, const PredictOptions& options) {
-  if (!(dt > 0)) throw NumericalFailure("fluid: a time step of {} s", dt);
   const double half_ratio = previous_dt_ > 0 ? 0.5 * dt / previous_dt_ : 0;
-  Advance step{
-      .dt = dt, .weight_new = 1 + half_ratio, .weight_old = -half_ratio, .density = parameters_.density};
+  advance({.dt = dt, .weight_new = 1 + half_ratio, .weight_old = -half_ratio}, options);
+  previous_dt_ = dt;
+}
+
+void Flow::advance(Advance step, const PredictOptions& options) {
+  if (!(step.dt > 0)) throw NumericalFailure("fluid: a time step of {} s", step.dt);
+  step.density = parameters_.density;
   if (options.force) step.force = &force_;
   if (options.old_pressure) {
-    fill_pressure_ghosts(slab_, boundaries_, pressure_, end_pressure_);
+    fill_phi_ghosts(pressure_, end_pressure_);
     step.pressure = &pressure_;
   }
   keep_pressure_ = options.old_pressure;
   momentum_.advance(velocity_, step, rate_, next_);
   apply_inflow(next_);
   velocity_.swap(next_);
-  previous_dt_ = dt;
-  if (options.penalise) penalise(dt);
+  if (options.penalise) penalise(step.dt);
+}
+
+StepReport Flow::step_rk3(double dt) {
+  struct Stage {
+    double part, weight_new, weight_old;  // the weights over the part of the step
+  };
+  constexpr std::array<Stage, 3> stages{
+      {{8.0 / 15, 1, 0}, {2.0 / 15, 25.0 / 8, -17.0 / 8}, {1.0 / 3, 9.0 / 4, -5.0 / 4}}};
+  StepReport report;
+  for (const auto& [part, weight_new, weight_old] : stages) {
+    advance({.dt = part * dt, .weight_new = weight_new, .weight_old = weight_old}, {});
+    report = project(part * dt);
+  }
+  previous_dt_ = 0;
+  report.cfl = dt * report.max_speed / slab_.grid.h;
+  return report;
+}
+
+void Flow::fill_phi_ghosts(Field& pressure, const std::array<double, 2>& end_pressure) {
+  if (parameters_.order == 4) {
+    fill_periodic_ghosts(slab_, pressure, 2);
+  } else {
+    fill_pressure_ghosts(slab_, boundaries_, pressure, end_pressure);
+  }
 }
 
 void Flow::add_impulse(const FaceField& force, double dt) {
@@ -172,20 +211,72 @@ void Flow::fill_source(int k, double per_dt, double* plane) {
 
 StepReport Flow::project(double dt) {
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
-  exchange_planes(slab_, velocity_[2], 1);
+  const bool fourth = parameters_.order == 4;
   // The exchange does not reach the highest face of a closed box, which belongs to its own slab.
-  poisson_.solve([&](int k, double* plane) { fill_source(k, 1 / dt, plane); },
-                 [&](int k, const double* plane) {
-                   for (int j = 0; j < ny; ++j) {
-                     std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, correction_.row(j, k));
-                   }
-                 });
+  if (fourth) {
+    fill_ghosts();
+  } else {
+    exchange_planes(slab_, velocity_[2], 1);
+  }
+  poisson_->solve(
+      [&](int k, double* plane) {
+        fourth ? fill_source_fourth_order(k, 1 / dt, plane) : fill_source(k, 1 / dt, plane);
+      },
+      [&](int k, const double* plane) {
+        for (int j = 0; j < ny; ++j)
+          std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, correction_.row(j, k));
+      });
   const std::array<double, 2> ends = keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_;
-  fill_pressure_ghosts(slab_, boundaries_, correction_, ends);
-  const StepReport report = correct(dt);
+  fill_phi_ghosts(correction_, ends);
+  const StepReport report = fourth ? correct_fourth_order(dt) : correct(dt);
   if (!std::isfinite(report.kinetic_energy)) report_not_finite();
   fill_ghosts();
   return report;
+}
+
+void Flow::fill_source_fourth_order(int k, double per_dt, double* plane) const {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const double factor = parameters_.density * per_dt / slab_.grid.h;
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  for (int j = 0; j < ny; ++j) {
+    const double* u = velocity_[0].row(j, k) + 1;
+    const double* v = velocity_[1].row(j, k) + sy;
+    const double* w = velocity_[2].row(j, k) + sz;
+    double* b = plane + static_cast<std::size_t>(j) * nx;
+#pragma omp simd
+    for (int i = 0; i < nx; ++i)
+      b[i] = factor * (fourth_order::difference(u + i, 1) + fourth_order::difference(v + i, sy) +
+                       fourth_order::difference(w + i, sz));
+  }
+}
+
+StepReport Flow::correct_fourth_order(double dt) {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  const double factor = dt / (parameters_.density * slab_.grid.h);
+  const double keep = keep_pressure_ ? 1 : 0;
+  double energy = 0, speed = 0;
+  for (int k = 0; k < slab_.planes; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      const double* phi = correction_.row(j, k);
+      double* u = velocity_[0].row(j, k);
+      double* v = velocity_[1].row(j, k);
+      double* w = velocity_[2].row(j, k);
+#pragma omp simd reduction(+ : energy) reduction(max : speed)
+      for (int i = 0; i < nx; ++i) {
+        u[i] -= factor * fourth_order::difference(phi + i, 1);
+        v[i] -= factor * fourth_order::difference(phi + i, sy);
+        w[i] -= factor * fourth_order::difference(phi + i, sz);
+        energy += u[i] * u[i] + v[i] * v[i] + w[i] * w[i];
+        const double sum = std::abs(u[i]) + std::abs(v[i]) + std::abs(w[i]);
+        speed = speed < sum ? sum : speed;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < correction_.data().size(); ++i)
+    correction_.data()[i] += keep * pressure_.data()[i];
+  pressure_.swap(correction_);
+  return report_of(dt, energy, speed);
 }
 
 // Downwards, so that the new pressure can take the place of phi where no face above needs it any more: the
@@ -229,6 +320,10 @@ StepReport Flow::correct(double dt) {
     }
   }
   pressure_.swap(correction_);
+  return report_of(dt, energy, speed);
+}
+
+StepReport Flow::report_of(double dt, double energy, double speed) const {
   StepReport report;
   report.kinetic_energy =
       mpi::sum(slab_.comm, 0.5 * parameters_.density * std::pow(slab_.grid.h, 3) * energy);

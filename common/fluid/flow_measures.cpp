@@ -91,6 +91,14 @@ double Flow::kinetic_energy() const {
 double Flow::divergence() const {
   const Grid& grid = slab_.grid;
   double largest = 0;
+  if (parameters_.order == 4) {
+    std::vector<double> plane(grid.plane_cells());
+    for (int k = 0; k < slab_.planes; ++k) {
+      fill_source_fourth_order(k, 1 / parameters_.density, plane.data());
+      for (double value : plane) largest = std::max(largest, std::abs(value));
+    }
+    return mpi::max(slab_.comm, largest);
+  }
   for (int k = 0; k < slab_.planes; ++k) {
     for (int j = 0; j < grid.cells[1]; ++j) {
       const double* u = velocity_[0].row(j, k);

@@ -25,12 +25,18 @@ Convection convection_from(const std::string& name) {
   if (name == "upwind3") return Convection::upwind3;
   if (name == "centred4") return Convection::centred4;
   if (name == "centred2") return Convection::centred2;
-  throw InputError("convection '{}'; expected upwind3, centred4 or centred2", name);
+  if (name == "conserving4") return Convection::conserving4;
+  throw InputError("convection '{}'; expected upwind3, centred4, centred2 or conserving4", name);
 }
 
 Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection scheme,
-                   double kinematic_viscosity)
-    : slab_(slab), boundaries_(boundaries), nu_(kinematic_viscosity) {
+                   double kinematic_viscosity, int order)
+    : slab_(slab), boundaries_(boundaries), convection_(scheme), nu_(kinematic_viscosity), order_(order) {
+  if (order == 4 ? scheme != Convection::centred4 && scheme != Convection::conserving4
+                 : scheme == Convection::conserving4)
+    throw InputError(
+        "fluid: convection and order do not go together; order 4 has centred4 and conserving4, order 2 "
+        "upwind3, centred4 and centred2");
   switch (scheme) {
     case Convection::upwind3:
       scheme_ = {7.0 / 12, 1.0 / 12, 1.0 / 12};
@@ -38,6 +44,7 @@ Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection sc
     case Convection::centred4:
       scheme_ = {7.0 / 12, 1.0 / 12, 0};
       break;
+    case Convection::conserving4:
     case Convection::centred2:
       scheme_ = {0.5, 0, 0};
       break;
@@ -125,6 +132,7 @@ void Momentum::hold_sides(int k, FaceField& rate, FaceField& next) const {
 }
 
 void Momentum::advance(const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next) {
+  if (order_ == 4) return advance_fourth_order(velocity, step, rate, next);
   start_plane_fluxes(velocity);
   const auto is_open = [&](int k) {
     return !slab_.periodic_z && ((k == 0 && slab_.is_lowest() && boundaries_.end(End::low) == Side::open) ||

@@ -9,27 +9,22 @@
 // mean of phi is free (no open end), b is made compatible by removing its mean, and the mean of phi is 0.
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <vector>
 
 #include "fluid/boundary.hpp"
 #include "fluid/grid.hpp"
+#include "fluid/pressure_solver.hpp"
 
 namespace valsalva::fluid {
 
-class Poisson {
+class Poisson : public PressureSolver {
  public:
   Poisson(const Slab& slab, const Boundaries& boundaries);
-  ~Poisson();
+  ~Poisson() override;
   Poisson(const Poisson&) = delete;
   Poisson& operator=(const Poisson&) = delete;
 
-  /// A plane is nx ny doubles, x fastest; k is the local plane. Planes are visited once each, in an order of
-  /// the solver's choice.
-  using Source = std::function<void(int k, double* plane)>;
-  using Sink = std::function<void(int k, const double* plane)>;
-  void solve(const Source& b, const Sink& phi);
+  void solve(const Source& b, const Sink& phi) override;
 
  private:
   struct Impl;

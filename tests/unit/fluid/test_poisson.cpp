@@ -5,7 +5,7 @@
 #include <ostream>
 #include <random>
 
-#include "fluid/flow.hpp"
+#include "fluid/poisson.hpp"
 
 using namespace valsalva;
 using namespace valsalva::fluid;

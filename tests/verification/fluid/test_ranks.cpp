@@ -20,6 +20,7 @@ struct Scene {
   const char* name;
   Side x, y, low, high;
   bool tube;
+  int order = 2;
 };
 
 void PrintTo(const Scene& scene, std::ostream* out) {
@@ -33,7 +34,10 @@ std::unique_ptr<Flow> make(MPI_Comm comm, const Scene& scene) {
   grid.h = 0.5;
   Boundaries boundaries;
   boundaries.side = {{{scene.x, scene.x}, {scene.y, scene.y}, {scene.low, scene.high}}};
-  auto flow = std::make_unique<Flow>(comm, grid, boundaries, FlowParameters{});
+  FlowParameters parameters;
+  parameters.order = scene.order;
+  if (scene.order == 4) parameters.convection = Convection::centred4;
+  auto flow = std::make_unique<Flow>(comm, grid, boundaries, parameters);
   if (scene.tube) {
     flow->solids().set_lumen([](const Vec3& x) { return std::hypot(x[0], x[1]) - 4; });
     const int body = flow->solids().add_body("strut");
@@ -139,6 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Scene{"inflow", Side::slip, Side::wall, Side::inflow, Side::open, true},
                     Scene{"box", Side::wall, Side::wall, Side::wall, Side::wall, false},
                     Scene{"periodic", Side::periodic, Side::periodic, Side::periodic, Side::periodic, false},
+                    Scene{"order4", Side::periodic, Side::periodic, Side::periodic, Side::periodic, false, 4},
                     Scene{"pipe", Side::slip, Side::slip, Side::periodic, Side::periodic, true}),
     [](const auto& info) { return std::string(info.param.name); });
 
