@@ -3,9 +3,7 @@
 
 #include <optional>
 
-#include "circulation/left_heart.hpp"
-#include "circulation/waveform.hpp"
-#include "circulation/windkessel.hpp"
+#include "circulation/parameters.hpp"
 #include "core/case.hpp"
 #include "coupling/immersed_flow.hpp"
 #include "fluid/flow.hpp"
@@ -23,19 +21,6 @@ struct Masks {  // in cells
   double strut = 0.5, shell = 0.6, edge = 0.8;
 };
 
-enum class Upstream { heart, flow, pressure };
-enum class Downstream { windkessel, resistance, pressure };
-
-struct CirculationParameters {
-  Upstream upstream = Upstream::heart;
-  Downstream downstream = Downstream::windkessel;
-  double period_s = 0.8512;
-  circulation::LeftHeartParameters heart;
-  circulation::WindkesselParameters windkessel;
-  std::optional<circulation::Waveform> flow, pressure;  ///< mm3/s, Pa
-  double end_diastolic_Pa = 0, aortic_Pa = 0, outlet_resistance = 0;
-};
-
 struct Parameters {
   bool device = false;  ///< the leaflets are those of a device
   double h = 1;
@@ -45,7 +30,7 @@ struct Parameters {
   coupling::Spacing spacing;
   Tissue tissue;
   Masks masks;
-  CirculationParameters circulation;
+  circulation::Parameters circulation;
   double initialisation_s = 0.03, end_s = 0;
   int beats = 1;
   double anchor_drag = 0;  ///< uN s/mm

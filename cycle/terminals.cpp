@@ -21,7 +21,7 @@ double smooth(double s) {
 
 }  // namespace
 
-Terminals::Terminals(const CirculationParameters& p, double initialisation_s, double inertance)
+Terminals::Terminals(const circulation::Parameters& p, double initialisation_s, double inertance)
     : parameters_(p), initialisation_s_(initialisation_s) {
   const bool heart = p.upstream == Upstream::heart, windkessel = p.downstream == Downstream::windkessel;
   double stored = p.aortic_Pa;
@@ -41,6 +41,11 @@ Terminals::Terminals(const CirculationParameters& p, double initialisation_s, do
     low_ = std::move(left_heart);
   } else if (p.upstream == Upstream::flow) {
     low_ = std::make_unique<FlowSource>(*p.flow, inertance, p.end_diastolic_Pa);
+  } else if (p.upstream == Upstream::adapter) {
+    low_start_Pa_ = p.pressure->at(0);
+    low_ = std::make_unique<ImpedanceAdapter>(p.adapter, *p.pressure, low_start_Pa_);
+  } else if (p.upstream == Upstream::pump) {
+    low_ = std::make_unique<PumpChamber>(p.pump, *p.flow, *p.atrial_pressure, p.end_diastolic_Pa);
   } else {
     low_ = std::make_unique<PressureSource>(*p.pressure);
     low_start_Pa_ = p.pressure->at(0);

@@ -29,6 +29,11 @@ PeriodicBeat periodic_beat(const LeftHeartParameters& heart_parameters, const Wi
             tree.pressure(),
             0.0,
             0.0,
+            tree.pressure(),
+            tree.pressure(),
+            0.0,
+            0.0,
+            0.0,
             n};
     for (int i = 0; i < steps_per_beat; ++i) {
       heart.advance(i * dt, dt, -flow);
@@ -37,6 +42,11 @@ PeriodicBeat periodic_beat(const LeftHeartParameters& heart_parameters, const Wi
       flow =
           std::max(0.0, (flow + dt / valve.inertance * push) / (1 + dt / valve.inertance * valve.resistance));
       beat.stroke_volume += dt * flow;
+      if (flow > 0) beat.ejection_s += dt;
+      beat.peak_flow = std::max(beat.peak_flow, flow);
+      beat.least_aortic_pressure = std::min(beat.least_aortic_pressure, tree.pressure());
+      beat.greatest_aortic_pressure = std::max(beat.greatest_aortic_pressure, tree.pressure());
+      beat.mean_aortic_pressure += tree.pressure() / steps_per_beat;
       beat.peak_ventricular_pressure = std::max(beat.peak_ventricular_pressure, heart.ventricular_pressure());
     }
     const double change = std::max({std::abs(heart.atrial_volume() / beat.atrial_volume - 1),

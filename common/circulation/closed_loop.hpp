@@ -21,7 +21,10 @@ struct PeriodicBeat {
   double ventricular_pressure = 0, aortic_pressure = 0;  ///< Pa, at the start
   double stroke_volume = 0;                              ///< mm3
   double peak_ventricular_pressure = 0;                  ///< Pa
-  int beats = 0;                                         ///< until periodic
+  double least_aortic_pressure = 0, greatest_aortic_pressure = 0, mean_aortic_pressure = 0;  ///< Pa
+  double peak_flow = 0;                                                                      ///< mm3/s
+  double ejection_s = 0;  ///< time with forward flow
+  int beats = 0;          ///< until periodic
 };
 
 /// NumericalFailure when the loop is not periodic to 1e-5 after 400 beats (no inflow, no resistance).

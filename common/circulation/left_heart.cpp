@@ -83,6 +83,8 @@ LeftHeart::LeftHeart(const LeftHeartParameters& p, double atrial_volume, double 
       ventricular_volume_(ventricular_volume) {
   require(p.vein_flow >= 0, "the pulmonary vein's flow (mm3/s)", p.vein_flow, "zero or more");
   require(p.mitral_resistance > 0, "the mitral resistance (Pa s/mm3)", p.mitral_resistance, "a positive one");
+  require(p.mitral_leak_resistance >= 0, "the shut mitral valve's resistance (Pa s/mm3)",
+          p.mitral_leak_resistance, "zero or more");
   require(p.outflow_resistance >= 0, "the outflow tract's resistance (Pa s/mm3)", p.outflow_resistance,
           "zero or more");
   require(std::isfinite(atrial_volume) && atrial_volume > 0, "the atrial volume (mm3)", atrial_volume,
@@ -99,7 +101,9 @@ void LeftHeart::advance(double time_s, double dt_s, double inflow) {
   const double ventricular_closed = ventricular_volume_ + dt_s * inflow;
   // Implicit: R_MV Q = E_LA (V_LA' - dt Q) - E_LV (V_LV' + dt Q), cut off at Q = 0 by the diode.
   const double drive = atrial * atrial_closed - ventricular * ventricular_closed;
-  mitral_flow_ = std::max(0.0, drive / (parameters_.mitral_resistance + dt_s * (atrial + ventricular)));
+  const auto flow = [&](double resistance) { return drive / (resistance + dt_s * (atrial + ventricular)); };
+  const double leak = parameters_.mitral_leak_resistance;
+  mitral_flow_ = drive > 0 ? flow(parameters_.mitral_resistance) : leak > 0 ? flow(leak) : 0;
   atrial_volume_ = atrial_closed - dt_s * mitral_flow_;
   ventricular_volume_ = ventricular_closed + dt_s * mitral_flow_;
   atrial_pressure_ = atrial * atrial_volume_;

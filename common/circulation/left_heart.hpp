@@ -5,6 +5,7 @@
 //   d(C_LA P_LA)/dt = Q_vein - Q_MV,  d(C_LV P_LV)/dt = Q_MV - Q_LVOT           (tavr-ifed-2022, eqs 7, 8)
 //   P_LVOT = P_LV - R_LVOT Q_LVOT                                               (eq. 9)
 //   Q_MV = max(0, (P_LA - P_LV) / R_MV)                                         (eq. 10)
+//          - max(0, P_LV - P_LA) / R_back where the valve leaks (R_back > 0)
 //   1/C = E(t) = k g1/(1+g1) 1/(1+g2) + E_min,  g = (t/tau)^m                   (eqs 11, 12)
 //   k such that max E = E_max                                                   (eq. 13)
 //
@@ -40,9 +41,10 @@ class Elastance {
 
 struct LeftHeartParameters {
   double period_s = 0.8512;
-  double vein_flow = 0;           ///< Q_vein, mm3/s, >= 0
-  double mitral_resistance = 0;   ///< R_MV, Pa s/mm3, > 0
-  double outflow_resistance = 0;  ///< R_LVOT, Pa s/mm3, >= 0
+  double vein_flow = 0;               ///< Q_vein, mm3/s, >= 0
+  double mitral_resistance = 0;       ///< R_MV, Pa s/mm3, > 0
+  double outflow_resistance = 0;      ///< R_LVOT, Pa s/mm3, >= 0
+  double mitral_leak_resistance = 0;  ///< R_back, Pa s/mm3; 0: nothing passes the shut valve
   TwoHill atrium, ventricle;
 };
 

@@ -9,6 +9,8 @@ void declare_heart(Schema& schema) {
               "Heart: constant flow of the pulmonary veins into the left atrium (Brown et al. 2022)");
   schema.real("circulation.mitral_resistance_mmHg_s_per_mL", 0.005, positive(),
               "Heart: resistance of the open mitral valve, a diode (Brown et al. 2022)");
+  schema.real("circulation.mitral_leak_resistance_mmHg_s_per_mL", 0, not_negative(),
+              "Resistance of the shut mitral valve; 0: nothing passes");
   schema.real("circulation.lvot_resistance_mmHg_s_per_mL", 0.0043, not_negative(),
               "Heart: resistance between ventricle and outflow tract (Brown et al. 2022)");
   schema.real("circulation.lv_tau1_fraction", 0.0725, positive(),
@@ -49,17 +51,41 @@ void declare_waveforms(Schema& schema) {
                "Prescribed upstream pressure: value at each knot");
 }
 
+void declare_pulse_duplicator(Schema& schema) {
+  schema.real("circulation.adapter_resistance_mmHg_s_per_mL", 0.15, positive(),
+              "Adapter, pump: resistance R_1, R_VIA of the impedance adapter (Lee et al. 2020)");
+  schema.real(
+      "circulation.adapter_outlet_resistance_mmHg_s_per_mL", 0.15, not_negative(),
+      "Adapter: resistance R_2 between its compliance and the valve (Lee et al. 2020, porcine valve)");
+  schema.real("circulation.adapter_compliance_mL_per_mmHg", 0.1, positive(),
+              "Adapter: compliance (Lee et al. 2020, porcine valve)");
+  schema.real("circulation.pump_compliance_mL_per_mmHg", 0.0275, positive(),
+              "Pump: compliance C_1 on its side of the adapter (Lee et al. 2020, bovine pericardial valve)");
+  schema.real("circulation.chamber_compliance_mL_per_mmHg", 0.0347, positive(),
+              "Pump: compliance C_2 of the ventricle's chamber (the same)");
+  schema.real("circulation.pump_outlet_resistance_mmHg_s_per_mL", 0.0898, not_negative(),
+              "Pump: resistance R_out between chamber and valve (the same)");
+  schema.reals("circulation.atrial_time_s", {}, 0, not_negative(),
+               "Pump: times of the atrium's pressure; empty: it is constant");
+  schema.reals(
+      "circulation.atrial_pressure_mmHg", {8}, 0, unlimited(),
+      "Pump: pressure of the atrium at each time; the mitral resistance stands between it and the chamber");
+}
+
 }  // namespace
 
 void declare_circulation(Schema& schema) {
   schema.table("circulation", "What drives the valve (upstream) and what it works against (downstream)");
-  schema.choice("circulation.upstream", "heart", {"heart", "flow", "pressure"},
-                "Elastance model of the left heart, a prescribed flow, or a prescribed pressure");
+  schema.choice(
+      "circulation.upstream", "heart", {"heart", "flow", "pressure", "adapter", "pump"},
+      "Elastance model of the left heart; a prescribed flow or pressure; a pulse duplicator: the pump's "
+      "pressure behind an impedance adapter, or the pump's flow with the atrium's pressure");
   schema.choice("circulation.downstream", "windkessel", {"windkessel", "resistance", "pressure"},
                 "Three-element Windkessel, a resistance to a constant pressure, or a constant pressure");
   schema.real("circulation.period_s", 0.8512, {0.2, 3}, "Duration of a beat (Brown et al. 2022)");
   declare_heart(schema);
   declare_waveforms(schema);
+  declare_pulse_duplicator(schema);
   schema.real("circulation.characteristic_resistance_mmHg_s_per_mL", 0.042, not_negative(),
               "Windkessel: R_c (Brown et al. 2022)");
   schema.real("circulation.peripheral_resistance_mmHg_s_per_mL", 0.9046, positive(),
