@@ -8,9 +8,13 @@
 
 namespace valsalva::structure {
 
+/// How tetrahedra fill a cell: all along one diagonal, or mirrored from cell to cell, so that with even
+/// numbers of cells the edges run into all corners of the box.
+enum class Cut { one_way, mirrored };
+
 inline SolidMesh solid_box(
     Shape shape, std::array<int, 3> cells,
-    const std::function<Vec3(const Vec3&)>& map = [](const Vec3& x) { return x; }) {
+    const std::function<Vec3(const Vec3&)>& map = [](const Vec3& x) { return x; }, Cut cut = Cut::one_way) {
   SolidMesh mesh;
   Points unit;
   const bool fine = shape == Shape::hex27;
@@ -41,9 +45,22 @@ inline SolidMesh solid_box(
           mesh.add(shape, hex);
           continue;
         }
+        bool reversed = false;
+        if (cut == Cut::mirrored) {
+          const std::array<std::array<int, 8>, 3> mirror{
+              {{1, 0, 3, 2, 5, 4, 7, 6}, {3, 2, 1, 0, 7, 6, 5, 4}, {4, 5, 6, 7, 0, 1, 2, 3}}};
+          const std::array<int, 3> cell{i, j, k};
+          for (int d = 0; d < 3; ++d) {
+            if (cell[d] % 2 == 0) continue;
+            const std::vector<int> before = hex;
+            for (int a = 0; a < 8; ++a) hex[a] = before[mirror[d][a]];
+            reversed = !reversed;
+          }
+        }
         // Kuhn's six tetrahedra around the diagonal 0-6; they match from cell to cell.
         for (const Edge& way : {Edge{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}}) {
           std::vector<int> tet{hex[0], hex[way[0]], hex[way[1]], hex[6]};
+          if (reversed) std::swap(tet[1], tet[2]);
           if (shape == Shape::tet10)
             for (const Edge& e : {Edge{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}})
               tet.push_back(middle(tet[e[0]], tet[e[1]]));
