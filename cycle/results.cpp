@@ -8,6 +8,7 @@
 #include "core/units.hpp"
 #include "metrics/beat.hpp"
 #include "metrics/flutter.hpp"
+#include "metrics/periodicity.hpp"
 #include "state/checkpoint.hpp"
 
 namespace valsalva::cycle {
@@ -25,8 +26,9 @@ struct Window {  // rows of the last full beat
   std::size_t size() const { return last - first; }
 };
 
-Window last_beat(const History& history, const Parameters& p) {
-  const double start = p.initialisation_s + (p.beats - 1) * p.circulation.period_s;
+/// beat: counted from 1.
+Window rows_of_beat(const History& history, const Parameters& p, int beat) {
+  const double start = p.initialisation_s + (beat - 1) * p.circulation.period_s;
   const std::vector<double> time = history.column("time_s");
   const auto first = std::lower_bound(time.begin(), time.end(), start);
   const auto last = std::upper_bound(first, time.end(), start + p.circulation.period_s);
@@ -63,7 +65,7 @@ metrics::Flutter flutter_of(const History& history, Window w, const metrics::Bea
 
 void beat_figures(Summary& s, const Inputs& in, const Parameters& p, const Simulation& simulation) {
   const History& history = simulation.recorder().history();
-  const Window w = last_beat(history, p);
+  const Window w = rows_of_beat(history, p, p.beats);
   metrics::BeatSeries series;
   series.time_s = part(history, "time_s", w);
   series.upstream_Pa = part(history, "p_lvot_mmHg", w, pa_per_mmHg);
@@ -131,6 +133,25 @@ void beat_figures(Summary& s, const Inputs& in, const Parameters& p, const Simul
                                       m["diastolic_pressure_difference_mmHg"] >= 30};
 }
 
+/// How much the last beat differs from the one before it; pressures and flow.
+void compare_beats(Summary& s, const Parameters& p, const History& history) {
+  double worst = 0;
+  for (const char* column : {"p_lvot_mmHg", "p_ao_mmHg", "q_mL_per_s"}) {
+    metrics::BeatSamples beat[2];
+    for (int i = 0; i < 2; ++i) {
+      const int number = p.beats - 1 + i;
+      const Window w = rows_of_beat(history, p, number);
+      if (w.size() < 2) return;
+      beat[i].phase_s = part(history, "time_s", w);
+      for (double& t : beat[i].phase_s) t -= p.initialisation_s + (number - 1) * p.circulation.period_s;
+      beat[i].value = part(history, column, w);
+    }
+    worst = std::max(worst, metrics::beat_difference(beat[0], beat[1]));
+  }
+  s.metrics["beat_to_beat_difference_pct"] = 100 * worst;
+  s.checks["periodic_beat_pct"] = {100 * worst, 2, worst <= 0.02};
+}
+
 state::Mesh leaflets_now(const Leaflets& l, const state::Mesh& parent, const coupling::ImmersedShell& shell) {
   state::Mesh mesh = parent;
   mesh.points = shell.x();
@@ -190,6 +211,7 @@ void summarise(Summary& s, const Inputs& in, const Parameters& p, const Simulati
   const bool whole = simulation.time_s() >= p.initialisation_s + p.beats * p.circulation.period_s - 1e-9;
   if (whole) {
     beat_figures(s, in, p, simulation);
+    if (p.beats > 1) compare_beats(s, p, history);
   } else {
     s.notes["beat"] = "less than a full beat was simulated: no figures of a beat";
   }

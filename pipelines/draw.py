@@ -63,7 +63,7 @@ def main():
     parser.add_argument("--size", type=numbers, default=[900, 700])
     parser.add_argument("--clip", type=numbers)
     parser.add_argument("--title", default="")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
 
     bodies = []
     for view in options.views:
