@@ -1,5 +1,7 @@
 #include "parameters.hpp"
 
+#include <algorithm>
+
 #include "core/errors.hpp"
 #include "core/units.hpp"
 
@@ -31,9 +33,21 @@ Parameters read_parameters(const Case& scene) {
   p.fluid.penalisation_s = scene.real("fluid.penalisation_s");
   p.fluid.density = scene.real("fluid.density_g_per_mm3");
   p.fluid.viscosity = scene.real("fluid.viscosity_Pa_s");
+  p.fluid.implicit_viscosity = scene.text("fluid.viscosity_scheme") == "implicit";
+  if (scene.text("fluid.subgrid") == "vreman")
+    p.fluid.extra_viscosity.vreman = scene.real("fluid.vreman_constant");
+  if (scene.text("fluid.viscosity_model") == "carreau-yasuda") {
+    p.fluid.extra_viscosity.carreau_yasuda = fluid::CarreauYasuda{
+        scene.real("fluid.zero_shear_viscosity_Pa_s"), scene.real("fluid.carreau_time_s"),
+        scene.real("fluid.carreau_exponent"), scene.real("fluid.carreau_transition")};
+  }
   p.coupling.kernel = coupling::kernel_from(scene.text("cycle.kernel"));
   p.coupling.limits.safety = scene.real("cycle.step_safety");
   p.coupling.limits.largest_s = scene.real("cycle.max_step_s");
+  if (const auto& law = p.fluid.extra_viscosity.carreau_yasuda) {
+    const double viscous_limit = p.h * p.h * p.fluid.density / (12 * law->zero_shear);
+    p.coupling.limits.largest_s = std::min(p.coupling.limits.largest_s, viscous_limit);
+  }
   p.coupling.limits.cfl = scene.real("cycle.max_cfl");
   p.coupling.probe_interval = static_cast<int>(scene.integer("cycle.probe_interval"));
   p.coupling.probe_iterations = static_cast<int>(scene.integer("cycle.probe_iterations"));

@@ -32,7 +32,8 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
       boundaries_(boundaries),
       parameters_(parameters),
       solids_(slab_, parameters.density),
-      momentum_(slab_, boundaries_, parameters.convection, parameters.viscosity / parameters.density,
+      momentum_(slab_, boundaries_, parameters.convection,
+                parameters.implicit_viscosity ? 0 : parameters.viscosity / parameters.density,
                 parameters.order),
       poisson_(pressure_solver(slab_, boundaries_, parameters.order)),
       velocity_(slab_),
@@ -41,6 +42,17 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
       force_(slab_),
       pressure_(slab_),
       correction_(slab_) {
+  if (parameters.implicit_viscosity) {
+    if (parameters.order == 4) throw InputError("fluid: implicit viscosity is of order 2; use order 2");
+    implicit_viscosity_ =
+        std::make_unique<ImplicitViscosity>(slab_, boundaries_, parameters.viscosity / parameters.density);
+  }
+  if (parameters.extra_viscosity.any()) {
+    if (parameters.order == 4)
+      throw InputError("fluid: shear-thinning blood and subgrid models are of order 2; use order 2");
+    extra_viscosity_ = std::make_unique<ExtraViscosity>(slab_, boundaries_, parameters.extra_viscosity,
+                                                        parameters.viscosity, parameters.density);
+  }
   for (auto& plane : inflow_) plane.assign(grid.plane_cells(), 0.0);
   fill_ghosts();
 }
@@ -136,7 +148,19 @@ void Flow::advance(Advance step, const PredictOptions& options) {
   }
   keep_pressure_ = options.old_pressure;
   momentum_.advance(velocity_, step, rate_, next_);
+  if (extra_viscosity_) {
+    extra_viscosity_->update(velocity_);
+    extra_viscosity_->add(velocity_, step.dt * step.weight_new, rate_, next_);
+  }
   apply_inflow(next_);
+  if (implicit_viscosity_) {
+    solids_.prepare();
+    const double eta = parameters_.penalisation_s;
+    implicit_viscosity_->solve(step.dt, options.penalise ? step.dt / eta : 0, velocity_, solids_, next_);
+    if (options.penalise) solids_.record(eta, next_);
+    velocity_.swap(next_);
+    return;
+  }
   velocity_.swap(next_);
   if (options.penalise) penalise(step.dt);
 }

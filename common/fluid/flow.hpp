@@ -5,7 +5,9 @@
 //   step: N^n) u* <- (u* + dt/eta U_solid) / (1 + dt/eta)                               on solid faces lap
 //   phi = rho/dt div u*,   u^(n+1) = u* - dt/rho grad phi,   p^(n+1) = p^n + phi
 //
-//   N = -div(u u) + nu lap u      (momentum.hpp)
+//   N = -div(u u) + nu lap u      (momentum.hpp); with shear-thinning blood or a subgrid model + div(2 nu_x
+//   S)
+//                                 (viscosity.hpp)
 //
 // Second order in space and in time for the velocity (first order at penalised walls). Explicit: stable for
 // dt (|u|+|v|+|w|)/h below about 0.5 to 1 and dt < h^2 / (12 nu). What open ends prescribe: boundary.hpp.
@@ -37,9 +39,11 @@
 
 #include "fluid/boundary.hpp"
 #include "fluid/grid.hpp"
+#include "fluid/implicit_viscosity.hpp"
 #include "fluid/momentum.hpp"
 #include "fluid/pressure_solver.hpp"
 #include "fluid/solids.hpp"
+#include "fluid/viscosity.hpp"
 #include "state/state.hpp"
 
 namespace valsalva::fluid {
@@ -48,8 +52,10 @@ struct FlowParameters {
   double density = 1.0e-3;    ///< g/mm3
   double viscosity = 3.5e-3;  ///< Pa s
   Convection convection = Convection::upwind3;
-  double penalisation_s = 1e-8;  ///< eta, the time constant of solid faces
-  int order = 2;                 ///< in space; 4 only in boxes periodic in all directions
+  double penalisation_s = 1e-8;     ///< eta, the time constant of solid faces
+  int order = 2;                    ///< in space; 4 only in boxes periodic in all directions
+  bool implicit_viscosity = false;  ///< of the constant part (implicit_viscosity.hpp)
+  ExtraViscosityParameters extra_viscosity;
 };
 
 struct PredictOptions {
@@ -128,6 +134,10 @@ class Flow {
   double open_area(int plane) const;
   /// Mean pressure over the lumen's cells of plane k (0..nz-1), Pa.
   double mean_pressure(int plane) const;
+  /// Conjugate-gradient iterations of the last step; 0 with explicit viscosity.
+  int viscous_iterations() const { return implicit_viscosity_ ? implicit_viscosity_->iterations() : 0; }
+  /// Where viscosity is not constant: what is added to it, mm2/s (viscosity.hpp); otherwise null.
+  const ExtraViscosity* extra_viscosity() const { return extra_viscosity_.get(); }
   /// The face plane nearest to z.
   int plane_at(double z) const;
   double kinetic_energy() const;          ///< nanojoule
@@ -162,6 +172,8 @@ class Flow {
   Solids solids_;
   Momentum momentum_;
   std::unique_ptr<PressureSolver> poisson_;
+  std::unique_ptr<ImplicitViscosity> implicit_viscosity_;
+  std::unique_ptr<ExtraViscosity> extra_viscosity_;  ///< none: the viscosity is constant
   FaceField velocity_, next_, rate_, force_;
   Field pressure_, correction_;
   std::array<double, 2> end_pressure_{};

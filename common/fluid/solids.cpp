@@ -162,7 +162,7 @@ void Solids::list_faces() {
 }
 
 void Solids::penalise(double dt, double eta, FaceField& velocity) {
-  if (!listed_) list_faces();
+  prepare();
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   const double ratio = dt / eta, keep = 1 / (1 + ratio);
   const double mass_rate = density_ * std::pow(slab_.grid.h, 3) / dt;
@@ -184,6 +184,21 @@ void Solids::penalise(double dt, double eta, FaceField& velocity) {
       force_[face.body][d] += mass_rate * (u[face.index] - after);
       u[face.index] = after;
     }
+  }
+}
+
+void Solids::record(double eta, const FaceField& velocity) {
+  std::fill(force_.begin(), force_.end(), Vec3::Zero());
+  const double factor = density_ * std::pow(slab_.grid.h, 3) / eta;
+  for (int d = 0; d < 3; ++d) {
+    const double* u = velocity[d].data().data();
+    double of_wall = 0;
+    for (const Run& run : walls_[d]) {
+      for (int i = 0; i < run.count; ++i) of_wall += u[run.first + i];
+    }
+    force_[wall][d] += factor * of_wall;
+    for (const Held& face : held_[d])
+      force_[face.body][d] += factor * (u[face.index] - motion_[face.body].at(face.position)[d]);
   }
 }
 

@@ -61,6 +61,20 @@ class Solids {
 
   /// Penalises all owned faces with ratio = dt/eta, and keeps the momentum taken from the fluid for force_on.
   void penalise(double dt, double eta, FaceField& velocity);
+  /// each(index in a Field, velocity of the body there) for the held faces of component d, in fixed order.
+  template <class Each>
+  void each_face(int d, const Each& each) const {
+    for (const Run& run : walls_[d]) {
+      for (int i = 0; i < run.count; ++i) each(run.first + i, 0.0);
+    }
+    for (const Held& face : held_[d]) each(face.index, motion_[face.body].at(face.position)[d]);
+  }
+  /// Brings the lists of faces up to date: before each_face after marking.
+  void prepare() {
+    if (!listed_) list_faces();
+  }
+  /// In place of penalise, for a velocity that was penalised with eta elsewhere.
+  void record(double eta, const FaceField& velocity);
   /// Force of the fluid on the body over the last penalised step, micronewton (collective).
   Vec3 force_on(int body) const;
 

@@ -9,6 +9,20 @@ void declare_fluid(Schema& schema) {
   schema.real("fluid.density_g_per_mm3", 1.0e-3, {1e-4, 1e-1}, "Density (blood 1.0e-3, saline 1.0e-3)");
   schema.real("fluid.viscosity_Pa_s", 3.5e-3, {0, 10}, "Viscosity (blood 3.5e-3, saline about 0.9e-3)");
   schema.choice(
+      "fluid.viscosity_model", "newtonian", {"newtonian", "carreau-yasuda"},
+      "Constant viscosity, or blood that thins with shear: viscosity_Pa_s is then that at high shear");
+  schema.real("fluid.zero_shear_viscosity_Pa_s", 0.056, {0, 10},
+              "Carreau-Yasuda: viscosity at rest (assumed)");
+  schema.real("fluid.carreau_time_s", 1.902, {0, 1000}, "Carreau-Yasuda: time lambda (assumed)");
+  schema.real("fluid.carreau_exponent", 0.22, {0, 1}, "Carreau-Yasuda: exponent n (assumed)");
+  schema.real("fluid.carreau_transition", 1.25, {0.1, 10}, "Carreau-Yasuda: transition a (assumed)");
+  schema.choice("fluid.viscosity_scheme", "explicit", {"explicit", "implicit"},
+                "How the constant viscosity is advanced; implicit (Crank-Nicolson) has no limit on the step");
+  schema.choice("fluid.subgrid", "none", {"none", "vreman"},
+                "Model of the eddies that the grid does not resolve");
+  schema.real("fluid.vreman_constant", 0.07, {0, 1},
+              "c of Vreman's model; 2.5 times Smagorinsky's constant squared");
+  schema.choice(
       "fluid.convection", "upwind3", {"upwind3", "centred4", "centred2"},
       "Third-order upwind-biased convection, or fourth- or second-order centred without dissipation");
   schema.real(

@@ -21,6 +21,7 @@ struct Scene {
   Side x, y, low, high;
   bool tube;
   int order = 2;
+  bool thinning = false;  // Carreau-Yasuda blood and a subgrid model
 };
 
 void PrintTo(const Scene& scene, std::ostream* out) {
@@ -37,6 +38,7 @@ std::unique_ptr<Flow> make(MPI_Comm comm, const Scene& scene) {
   FlowParameters parameters;
   parameters.order = scene.order;
   if (scene.order == 4) parameters.convection = Convection::centred4;
+  if (scene.thinning) parameters.extra_viscosity = {.carreau_yasuda = CarreauYasuda{}, .vreman = 0.07};
   auto flow = std::make_unique<Flow>(comm, grid, boundaries, parameters);
   if (scene.tube) {
     flow->solids().set_lumen([](const Vec3& x) { return std::hypot(x[0], x[1]) - 4; });
@@ -137,12 +139,41 @@ TEST_P(Ranks, SpreadForcesReachTheirOwners) {
   EXPECT_NEAR(total(*together), expected, 1e-12 * std::abs(expected));
 }
 
+TEST(ImplicitViscosity, GivesTheFlowOfOneRankWithinItsTolerance) {
+  for (Side z : {Side::open, Side::periodic, Side::wall}) {
+    const auto run = [&](MPI_Comm comm) {
+      Grid grid;
+      grid.cells = {12, 10, 24};
+      grid.h = 0.5;
+      grid.origin = Vec3(-3, -2.5, -6);
+      Boundaries boundaries;
+      boundaries.side[1] = {Side::wall, Side::wall};
+      boundaries.side[2] = {z, z};
+      FlowParameters parameters;
+      parameters.implicit_viscosity = true;
+      parameters.viscosity = 1;
+      auto flow = std::make_unique<Flow>(comm, grid, boundaries, parameters);
+      flow->solids().set_lumen([](const Vec3& x) { return std::abs(x[0]) - 2.2; });
+      flow->set_velocity(rough);
+      for (int step = 0; step < 20; ++step) flow->step(2e-4);
+      return flow;
+    };
+    const auto parts = run(MPI_COMM_WORLD)->save(), whole = run(MPI_COMM_SELF)->save();
+    for (const char* name : {"fluid/velocity_x", "fluid/velocity_z"}) {
+      if (mpi::rank(MPI_COMM_WORLD) == 0) {
+        EXPECT_LT(largest_difference(parts.at(name), whole.at(name)), 1e-8) << name;
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Ranks,
     testing::Values(Scene{"tube", Side::slip, Side::slip, Side::open, Side::open, true},
                     Scene{"inflow", Side::slip, Side::wall, Side::inflow, Side::open, true},
                     Scene{"box", Side::wall, Side::wall, Side::wall, Side::wall, false},
                     Scene{"periodic", Side::periodic, Side::periodic, Side::periodic, Side::periodic, false},
+                    Scene{"thinning", Side::slip, Side::wall, Side::inflow, Side::open, true, 2, true},
                     Scene{"order4", Side::periodic, Side::periodic, Side::periodic, Side::periodic, false, 4},
                     Scene{"pipe", Side::slip, Side::slip, Side::periodic, Side::periodic, true}),
     [](const auto& info) { return std::string(info.param.name); });
