@@ -1,7 +1,10 @@
 #include "assembly/valve_shapes.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "core/errors.hpp"
 
@@ -34,6 +37,69 @@ Vec3 free_edge(const ValveShape& v, double s) {
   return {v.gap + bow * (1 - std::cos(t)), bow * std::sin(t), z};
 }
 
+/// A curve in the (s, z) plane, to be walked through evenly by its length; s counts as `width` mm.
+class Curve {
+ public:
+  template <typename Function>
+  Curve(double width, const Function& at) {
+    constexpr int pieces = 400;
+    for (int i = 0; i <= pieces; ++i) {
+      point_.push_back(at(static_cast<double>(i) / pieces));
+      const Eigen::Vector2d step = i ? Eigen::Vector2d(point_[i] - point_[i - 1]) : Eigen::Vector2d::Zero();
+      length_.push_back(i ? length_.back() + std::hypot(width * step.x(), step.y()) : 0.0);
+    }
+  }
+  Eigen::Vector2d at(double share) const {
+    const double wanted = share * length_.back();
+    auto next = std::upper_bound(length_.begin(), length_.end(), wanted);
+    if (next == length_.end()) return point_.back();
+    const auto i = next - length_.begin();
+    const double a = (wanted - length_[i - 1]) / (length_[i] - length_[i - 1]);
+    return (1 - a) * point_[i - 1] + a * point_[i];
+  }
+
+ private:
+  std::vector<Eigen::Vector2d> point_;
+  std::vector<double> length_;
+};
+
+/// The leaflet as a patch with four sides (Coons 1967) in the (s, z) plane: below, the middle of the
+/// attachment; at the sides, its steep parts with the commissures (or the cuts of a part); above, the free
+/// edge. So the elements keep their shape into the commissures.
+class Outline {
+ public:
+  Outline(const ValveShape& v, std::array<double, 2> part)
+      : left_corner_(part[0] > -1 ? part[0] : std::min(-corner, part[1])),
+        right_corner_(part[1] < 1 ? part[1] : std::max(corner, part[0])),
+        low_(width(v),
+             [&](double u) { return attached(v, left_corner_ + u * (right_corner_ - left_corner_)); }),
+        high_(width(v), [&](double u) { return on_edge(v, part[0] + u * (part[1] - part[0])); }),
+        left_(width(v), [&](double u) { return side(v, part[0], left_corner_, u); }),
+        right_(width(v), [&](double u) { return side(v, part[1], right_corner_, u); }) {}
+
+  Eigen::Vector2d at(double u, double w) const {
+    return (1 - w) * low_.at(u) + w * high_.at(u) + (1 - u) * left_.at(w) + u * right_.at(w) -
+           (1 - u) * (1 - w) * low_.at(0) - u * (1 - w) * low_.at(1) - (1 - u) * w * high_.at(0) -
+           u * w * high_.at(1);
+  }
+
+ private:
+  static constexpr double corner = 0.55;  // where on the attachment, in units of s, its steep part begins
+  static double width(const ValveShape& v) { return v.radius * v.half_angle_deg * rad_per_deg; }
+  static Eigen::Vector2d attached(const ValveShape& v, double s) { return {s, attachment_z(v, s)}; }
+  static Eigen::Vector2d on_edge(const ValveShape& v, double s) { return {s, free_edge(v, s).z()}; }
+  /// From the corner of the attachment to the free edge, along the attachment or straight up a cut.
+  static Eigen::Vector2d side(const ValveShape& v, double end, double from, double u) {
+    if (std::abs(end) < 1) return (1 - u) * attached(v, end) + u * on_edge(v, end);
+    constexpr double bend = 0.8;  // share of the parameter for the attachment, the rest for the commissure
+    if (u < bend) return attached(v, from + u / bend * (end - from));
+    return attached(v, end) + (u - bend) / (1 - bend) * (on_edge(v, end) - attached(v, end));
+  }
+
+  double left_corner_, right_corner_;
+  Curve low_, high_, left_, right_;
+};
+
 }  // namespace
 
 void check_valve(const ValveShape& v, const std::string& what) {
@@ -51,14 +117,17 @@ Map leaflet_map(const Frame& frame, const ValveShape& v, std::array<double, 2> p
   const auto middle = [=](double s, double t) {
     return Vec3((1 - t) * on_tube(v, s, attachment_z(v, s)) + t * free_edge(v, s));
   };
+  const auto outline = std::make_shared<const Outline>(v, part);
   return [=](const Vec3& u) {
-    const double s = along(part, u.x());
-    Vec3 x = middle(s, u.y());
+    const Eigen::Vector2d flat = outline->at(u.x(), u.y());
+    const double s = std::clamp(flat.x(), -1.0, 1.0);
+    const double low = attachment_z(v, s), high = free_edge(v, s).z();
+    const double t = std::clamp((flat.y() - low) / (high - low), 0.0, 1.0);
+    Vec3 x = middle(s, t);
     if (v.wall > 0 && u.z() > 0) {
-      // One-sided inside the leaflet, so that halves of it meet in the same normal at the symmetry plane.
       const double step = 1e-5, left = std::max(s - step, -1.0), right = std::min(s + step, 1.0);
-      const Vec3 du = middle(right, u.y()) - middle(left, u.y());
-      const Vec3 dv = middle(s, std::min(u.y() + step, 1.0)) - middle(s, std::max(u.y() - step, 0.0));
+      const Vec3 du = middle(right, t) - middle(left, t);
+      const Vec3 dv = middle(s, std::min(t + step, 1.0)) - middle(s, std::max(t - step, 0.0));
       x += u.z() * v.wall * du.cross(dv).normalized();
     }
     return frame.at(x);

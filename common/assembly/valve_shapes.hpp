@@ -1,6 +1,5 @@
 // Sheets of an idealised trileaflet valve in a tube along the third axis of a frame: a leaflet, and the
-// scallop of the crown (stent) below it. Both take the same numbers, so that with equal divisions their nodes
-// along the attachment meet; posts between scallops are patches of a cylinder.
+// scallop of the crown (stent) below it; posts between scallops are patches of a cylinder.
 //
 // s in [-1, 1] goes over a leaflet, the azimuth being s half_angle. The attachment lies on the tube,
 //   z(s) = height |s|^exponent,

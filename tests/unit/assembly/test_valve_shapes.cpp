@@ -24,27 +24,44 @@ ValveShape sample() {
   return v;
 }
 
-TEST(ValveShapes, TheLeafletHangsOnTheTubeAndTheCrownMeetsItNodeByNode) {
+TEST(ValveShapes, TheLeafletHangsOnTheTubeAndTheCrownEndsThere) {
   const ValveShape v = sample();
+  const double half = 57 * M_PI / 180;
+  const auto attachment = [&](const Vec3& x) { return 11 * std::pow(std::atan2(x.y(), x.x()) / half, 2); };
   const BodyMesh leaflet = sheet(leaflet_map(upright, v, {-1, 1}), {16, 8}, Pattern::alternating);
+  for (const char* side : {"start1", "start2", "end1"})
+    for (int a : leaflet.groups.at(side)) {
+      const Vec3 x = leaflet.points[a] - upright.origin;
+      EXPECT_NEAR(x.head<2>().norm(), 12, 1e-9);
+      if (x.z() < 11 - 1e-6) {
+        EXPECT_NEAR(x.z(), attachment(x), 1e-9) << side;
+      } else {
+        EXPECT_NEAR(std::abs(std::atan2(x.y(), x.x())), half, 1e-6) << side;
+      }
+    }
   const BodyMesh crown = sheet(crown_map(upright, v, {-1, 1}), {16, 4}, Pattern::alternating);
-  const auto& hung = leaflet.groups.at("start2");
-  const auto& top = crown.groups.at("end2");
-  ASSERT_EQ(hung.size(), 17u);
-  ASSERT_EQ(top.size(), 17u);
-  for (std::size_t i = 0; i < 17; ++i) {
-    const Vec3 x = leaflet.points[hung[i]] - upright.origin;
+  for (int a : crown.groups.at("end2")) {
+    const Vec3 x = crown.points[a] - upright.origin;
     EXPECT_NEAR(x.head<2>().norm(), 12, 1e-12);
-    EXPECT_LT((leaflet.points[hung[i]] - crown.points[top[i]]).norm(), 1e-12);
+    EXPECT_NEAR(x.z(), attachment(x), 1e-12);
   }
   const auto& edge = leaflet.groups.at("end2");
   const Vec3 middle = leaflet.points[edge[8]] - upright.origin;
-  EXPECT_NEAR(middle.x(), 2.5, 1e-12);
-  EXPECT_NEAR(middle.y(), 0, 1e-12);
-  EXPECT_NEAR(middle.z(), 14, 1e-12);
+  EXPECT_LT((middle - Vec3(2.5, 0, 14)).norm(), 1e-6);
   const Vec3 tip = leaflet.points[edge[0]] - upright.origin;
-  EXPECT_NEAR(tip.head<2>().norm(), 12, 1e-12);
-  EXPECT_NEAR(std::atan2(tip.y(), tip.x()), -57 * M_PI / 180, 1e-12);
+  EXPECT_NEAR(tip.head<2>().norm(), 12, 1e-9);
+  EXPECT_NEAR(std::atan2(tip.y(), tip.x()), -half, 1e-9);
+}
+
+TEST(ValveShapes, ElementsKeepTheirShapeIntoTheCommissures) {
+  for (const std::array<double, 2> part : {std::array{-1.0, 1.0}, {0.0, 1.0}}) {
+    const BodyMesh leaflet = sheet(leaflet_map(upright, sample(), part), {16, 12}, Pattern::alternating);
+    for (const Triangle& t : leaflet.triangles) {
+      const Vec3 &p = leaflet.points[t[0]], &q = leaflet.points[t[1]], &r = leaflet.points[t[2]];
+      const double longest = std::max({(q - p).norm(), (r - q).norm(), (p - r).norm()});
+      EXPECT_GT((q - p).cross(r - p).norm(), 0.12 * longest * longest);
+    }
+  }
 }
 
 TEST(ValveShapes, TheLeafletsNormalPointsToTheAorta) {
