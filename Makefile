@@ -5,7 +5,8 @@
 #   make segment|mesher|stent|crimp|deploy|cycle|report CASE=...   that stage, when its inputs changed [FORCE=1] [RESUME=1]
 #   make cohort COHORT=file.csv [JOBS=n]
 #   make verify                       the verification programs, with a table in runs/verify
-#   make setup | build | bench | lint | reference | clean
+#   make lint [SINCE=commit]          clang-format, clang-tidy over all files or those changed since a commit
+#   make setup | build | bench | reference | clean
 
 CASE     ?= demo
 FIDELITY ?=
@@ -14,6 +15,7 @@ JOBS     ?= 1
 SET      ?=
 FORCE    ?=
 RESUME   ?=
+SINCE    ?=
 COHORT   ?= pipelines/cohorts/anatomies.csv
 
 PIPELINE = python3 pipelines/pipeline.py
@@ -53,7 +55,7 @@ bench: build
 	python3 pipelines/bench.py
 
 lint: setup
-	@sh pipelines/lint.sh
+	@SINCE="$(SINCE)" sh pipelines/lint.sh
 
 format: setup
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i
