@@ -201,10 +201,11 @@ struct Trial {
   double size = 0, norm = 0, along = 0;
 };
 
-NewtonReport iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& matrix,
-                     LinearSolver& solver, const NewtonSettings& settings, bool search) {
+// Adds to the report's counts, also when it fails.
+void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& matrix, LinearSolver& solver,
+             const NewtonSettings& settings, bool search, NewtonReport& report) {
   Configuration& now = equations.system().state;
-  NewtonReport report;
+  const int last = report.iterations + settings.max_iterations;
   double size = 0;
   Eigen::VectorXd residual = problem.residual(size);
   std::string obstacle;
@@ -220,11 +221,11 @@ NewtonReport iterate(Equations& equations, const NewtonProblem& problem, BlockMa
     const bool moving = still > 1e-12 * equations.length();
     const double norm = equations.norm(residual);
     report.residual = size > 0 ? norm / size : 0;
-    if (!moving && norm <= settings.tolerance * size) return report;
-    if (report.iterations == settings.max_iterations)
+    if (!moving && norm <= settings.tolerance * size) return;
+    if (report.iterations == last)
       throw NumericalFailure(
           "Newton's method: residual {:.3g} of the forces after {} iterations, largest at {}",
-          report.residual, report.iterations, equations.worst(residual));
+          report.residual, settings.max_iterations, equations.worst(residual));
     problem.tangent(matrix);
     report.linear = solver.solve(matrix, equations.fixed(), residual, u, now.x);
     const double start = along(residual, u);
@@ -247,6 +248,8 @@ NewtonReport iterate(Equations& equations, const NewtonProblem& problem, BlockMa
         trial.along = along(trial.residual, u);
         if (!best.sound || trial.along < best.along) best = trial, best_step = step;
         if (moving || !search || trial.norm < norm || trial.along <= 0.9 * start) break;
+      } else if (!search && settings.line_search) {
+        throw NumericalFailure("Newton's method: a full step is not possible: {}", obstacle);
       }
       if (halving == settings.max_halvings) {
         if (!best.sound)
@@ -271,7 +274,7 @@ NewtonReport iterate(Equations& equations, const NewtonProblem& problem, BlockMa
     if (tiny && equations.norm(residual) <= 1e-4 * size) {
       ++report.iterations;
       report.residual = size > 0 ? equations.norm(residual) / size : 0;
-      return report;
+      return;
     }
   }
 }
@@ -280,14 +283,20 @@ NewtonReport iterate(Equations& equations, const NewtonProblem& problem, BlockMa
 
 NewtonReport newton(Equations& equations, const NewtonProblem& problem, BlockMatrix& matrix,
                     LinearSolver& solver, const NewtonSettings& settings) {
-  const Attempt start(equations, equations.system().state);
-  try {
-    return iterate(equations, problem, matrix, solver, settings, false);
-  } catch (const NumericalFailure&) {
-    if (!settings.line_search) throw;
+  NewtonReport report;
+  if (!settings.search_first) {
+    const Attempt start(equations, equations.system().state);
+    try {
+      iterate(equations, problem, matrix, solver, settings, false, report);
+      return report;
+    } catch (const NumericalFailure&) {
+      if (!settings.line_search) throw;
+    }
+    start.undo(equations);
   }
-  start.undo(equations);
-  return iterate(equations, problem, matrix, solver, settings, true);
+  report.searched = true;
+  iterate(equations, problem, matrix, solver, settings, true, report);
+  return report;
 }
 
 }  // namespace valsalva::solve

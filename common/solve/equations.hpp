@@ -60,11 +60,13 @@ struct NewtonSettings {
   double increment_tolerance = 1e-11;
   int max_iterations = 25;
   int max_halvings = 8;
-  bool line_search = true;  ///< when plain iterations fail
+  bool line_search = true;    ///< when plain iterations fail
+  bool search_first = false;  ///< no plain ones: Statics sets it once they have failed
 };
 
 struct NewtonReport {
-  int iterations = 0;
+  int iterations = 0;     ///< plain ones that failed included
+  bool searched = false;  ///< the line search was needed
   int halvings = 0;
   double residual = 0;  ///< relative
   LinearReport linear;  ///< of the last solve

@@ -24,7 +24,9 @@ Statics::Statics(structure::System& system, std::vector<std::shared_ptr<structur
 NewtonReport Statics::settle() {
   const NewtonProblem problem{[this](double& size) { return equations_.forces(size, stored_); },
                               [this](structure::BlockMatrix& k) { equations_.tangent(k); }};
-  return newton(equations_, problem, matrix_, solver_, settings_.newton);
+  const NewtonReport report = newton(equations_, problem, matrix_, solver_, settings_.newton);
+  settings_.newton.search_first = report.searched;
+  return report;
 }
 
 void Statics::advance_to(double factor) {
