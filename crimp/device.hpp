@@ -28,7 +28,7 @@ Device read_device(const state::State& stent, const Parameters& p);
 /// Bodies "frame", "leaflets", "skirt" in the mounted shape, at rest.
 structure::System make_system(const Device& device, const Parameters& p);
 
-/// Frame, shells and ties.
+/// Frame (a BeamTerm), shells and ties.
 std::vector<std::shared_ptr<structure::ForceTerm>> elastic_terms(const Device& device, const Parameters& p,
                                                                  const structure::System& system);
 

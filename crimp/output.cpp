@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bodies/frame.hpp"
+#include "bodies/frame_law.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "measures.hpp"
@@ -62,6 +63,7 @@ state::State snapshot(const StageContext& context, const state::State& stent, co
   }
   out.restart["frame/rotation"] = bodies::rotation_array(now.rotation);
   out.restart["frame/angular_velocity"] = Array::of(now.angular_velocity);
+  bodies::write_fibres(s.struts().history(), out);
   out.restart["crimp/diameter_mm"] = Array::scalar(2 * s.crimper_radius_mm());
   out.restart["crimp/radius_mm"] = Array::scalar(s.crimper_radius_mm());
   for (const auto& [name, values] : s.save())
@@ -95,6 +97,10 @@ void fill_summary(Summary& summary, const Simulation& s, const History& history,
   }();
   m["crimper_overlap_mm"] = s.crimper_overlap_mm();
   m["mass_ratio"] = s.integrator().mass_ratio();
+  if (s.device().frame->superelastic()) {
+    m["max_strut_martensite_pct"] = 100 * s.struts().largest_martensite();
+    m["strut_dissipation_uJ"] = uJ_per_nJ * s.struts().dissipated_nJ();
+  }
   m["slowed_node_steps"] = static_cast<double>(s.slowed());
 
   const auto at_most = [&](const std::string& name, double value, double limit) {

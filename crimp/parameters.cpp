@@ -1,5 +1,6 @@
 #include "parameters.hpp"
 
+#include "bodies/frame_law.hpp"
 #include "core/units.hpp"
 
 namespace valsalva::crimp {
@@ -10,8 +11,7 @@ Parameters read_parameters(const Case& scene) {
                   scene.real("device.k1_kPa") * units::pa_per_kPa, scene.real("device.k2")};
   p.bending_modulus_Pa = scene.real("device.bending_modulus_MPa") * units::pa_per_MPa;
   p.tissue_density = scene.real("device.tissue_density_g_per_mm3");
-  p.frame = {scene.real("device.frame_youngs_modulus_GPa") * units::pa_per_GPa,
-             scene.real("device.frame_poisson"), scene.real("device.frame_density_g_per_mm3")};
+  p.frame = bodies::frame_material(scene);
   p.target_diameter_mm = scene.real("crimp.diameter_mm");
   p.speed_mm_per_s = scene.real("crimp.speed_mm_per_s");
   p.ramp_s = 1e-3 * scene.real("crimp.ramp_ms");

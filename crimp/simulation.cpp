@@ -104,6 +104,7 @@ Simulation::Simulation(Device device, const Parameters& p)
         p.target_diameter_mm, 2 * outer_radius_of_frame(*device_.frame));
   displace(device_, p.asymmetry_mm, system_);
   auto terms = elastic_terms(device_, p, system_);
+  struts_ = std::static_pointer_cast<const structure::BeamTerm>(terms.front());
   bodies_ = std::make_shared<contact::BodyContact>(
       contact::Candidates(collision_mesh(device_, system_, p.thickness_fraction), p.candidates), p.law);
   const contact::BodyPairSettings with_struts{true, 0, p.strut_modulus_Pa};

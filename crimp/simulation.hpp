@@ -37,6 +37,7 @@ class Simulation {
   const Device& device() const { return device_; }
   const structure::System& system() const { return system_; }
   const structure::Integrator& integrator() const { return *integrator_; }
+  const structure::BeamTerm& struts() const { return *struts_; }
   const contact::BodyContact& body_contact() const { return *bodies_; }
   const Crimper& crimper() const { return crimper_; }
   double crimper_radius_mm() const { return crimper_.radius_mm(system_.state.time_s); }
@@ -55,6 +56,7 @@ class Simulation {
   Parameters p_;
   structure::System system_;
   Crimper crimper_;
+  std::shared_ptr<const structure::BeamTerm> struts_;
   std::shared_ptr<contact::BodyContact> bodies_;
   std::vector<std::shared_ptr<contact::ToolContact>> tools_;
   std::optional<structure::Integrator> integrator_;

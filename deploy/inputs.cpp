@@ -1,6 +1,7 @@
 #include "inputs.hpp"
 
 #include "bodies/frame.hpp"
+#include "bodies/frame_law.hpp"
 #include "bodies/level_set.hpp"
 #include "bodies/shell.hpp"
 #include "core/errors.hpp"
@@ -23,6 +24,7 @@ FrameBody read_frame(const state::State& crimp, const Parameters& p) {
   frame.velocity = zero_or(crimp, "frame/velocity", frame.points.size());
   frame.angular_velocity = zero_or(crimp, "frame/angular_velocity", frame.points.size());
   frame.rotation = bodies::read_rotations(crimp, frame.points.size());
+  frame.fibres = bodies::read_fibres(crimp, *frame.network);
   return frame;
 }
 

@@ -25,6 +25,7 @@ struct FrameBody {
   std::shared_ptr<structure::BeamNetwork> network;
   Points points, velocity, angular_velocity;
   std::vector<Eigen::Quaterniond> rotation;
+  structure::FibreHistory fibres;  ///< of superelastic struts
 };
 
 struct Inputs {

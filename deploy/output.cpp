@@ -1,6 +1,7 @@
 #include "output.hpp"
 
 #include "bodies/frame.hpp"
+#include "bodies/frame_law.hpp"
 #include "core/errors.hpp"
 #include "state/checkpoint.hpp"
 
@@ -57,6 +58,7 @@ state::State snapshot(const StageContext& context, const Simulation& s, const In
     const structure::Body& body = s.system().body("frame");
     out.restart["frame/rotation"] = bodies::rotation_array(
         std::span(s.system().state.rotation).subspan(body.rotation_offset, body.count));
+    bodies::write_fibres(s.struts()->history(), out);
     const Points& spin = s.system().state.angular_velocity;
     out.restart["frame/angular_velocity"] = Array::of(
         Points(spin.begin() + body.rotation_offset, spin.begin() + body.rotation_offset + body.count));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "bodies/frame_law.hpp"
 #include "core/units.hpp"
 
 namespace valsalva::deploy {
@@ -54,8 +55,7 @@ Parameters read_parameters(const Case& scene) {
   p.device.density = scene.real("device.tissue_density_g_per_mm3");
   p.native = tissue(scene, "native");
   p.stenosis_factor = scene.real("native.stenosis_factor");
-  p.frame = {scene.real("device.frame_youngs_modulus_GPa") * units::pa_per_GPa,
-             scene.real("device.frame_poisson"), scene.real("device.frame_density_g_per_mm3")};
+  p.frame = bodies::frame_material(scene);
   return p;
 }
 

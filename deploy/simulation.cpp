@@ -88,7 +88,8 @@ void Simulation::add_device(const Inputs& in, const Parameters& p) {
   const FrameBody& frame = in.frame;
   const Body struts = system_->add_rotational_body("frame", frame.points, frame.network->lumped_mass(),
                                                    frame.rotation, frame.network->lumped_inertia());
-  terms_.push_back(std::make_shared<structure::BeamTerm>(frame.network, struts));
+  struts_ = std::make_shared<structure::BeamTerm>(frame.network, struts, frame.fibres);
+  terms_.push_back(struts_);
   for (int a = 0; a < struts.count; ++a) {
     system_->state.v[struts.offset + a] = frame.velocity[a];
     system_->state.angular_velocity[struts.rotation_offset + a] = frame.angular_velocity[a];

@@ -49,6 +49,8 @@ class Simulation {
   Points points(const std::string& body) const;
   Points velocities(const std::string& body) const;
 
+  /// Null while the device is not there.
+  const structure::BeamTerm* struts() const { return struts_.get(); }
   const contact::BodyContact& contact() const { return *contact_; }
   /// Overlap with the wall, the largest of all bodies, beyond the contact radius.
   double wall_penetration_mm() const;
@@ -69,6 +71,7 @@ class Simulation {
 
   std::unique_ptr<structure::System> system_ = std::make_unique<structure::System>();
   std::vector<std::shared_ptr<structure::ForceTerm>> terms_;
+  std::shared_ptr<structure::BeamTerm> struts_;
   std::shared_ptr<contact::BodyContact> contact_;
   std::shared_ptr<contact::WallContact> frame_wall_, tissue_wall_;
   std::shared_ptr<Dilator> dilator_;

@@ -31,6 +31,13 @@ void declare_frame(Schema& schema) {
   schema.real("device.frame_poisson", 0.33, {0, 0.5},
               "Poisson number of the frame (published decks: 0.30-0.33)");
   schema.real("device.frame_density_g_per_mm3", 6.45e-3, positive(), "Density of Nitinol");
+  schema.choice("device.frame_law", "linear", {"linear", "superelastic"},
+                "Law of the struts: linear with frame_youngs_modulus_GPa, or superelastic with the loops of "
+                "frame_alloy (the modulus and Poisson's ratio above are then those of the alloy)");
+  schema.choice("device.frame_alloy", "nitinol-62.9", {"nitinol-62.9", "nitinol-51.7"},
+                "Published parameter set of the superelastic law (common/materials/superelastic.cpp)");
+  schema.integer("device.frame_fibres", 6, {2, 20},
+                 "Fibres over the width and over the depth of a superelastic strut");
 }
 
 void declare_tissue(Schema& schema) {
