@@ -33,6 +33,7 @@ Parameters read_parameters(const Case& scene) {
   p.fluid.penalisation_s = scene.real("fluid.penalisation_s");
   p.fluid.density = scene.real("fluid.density_g_per_mm3");
   p.fluid.viscosity = scene.real("fluid.viscosity_Pa_s");
+  p.fluid.wall = fluid::wall_from(scene.text("fluid.wall"));
   p.fluid.implicit_viscosity = scene.text("fluid.viscosity_scheme") == "implicit";
   if (scene.text("fluid.subgrid") == "vreman")
     p.fluid.extra_viscosity.vreman = scene.real("fluid.vreman_constant");
@@ -57,7 +58,7 @@ Parameters read_parameters(const Case& scene) {
   p.tissue = tissue_of(scene, p.device ? "device" : "native");
   p.masks = {scene.real("cycle.strut_mask_cells"), scene.real("cycle.shell_mask_cells"),
              scene.real("cycle.edge_mask_cells")};
-  p.circulation = circulation::read_parameters(scene);
+  p.circulation = read_circulation(scene);
   p.initialisation_s = scene.real("cycle.initialisation_s");
   p.beats = static_cast<int>(scene.integer("cycle.beats"));
   const double duration = scene.real("cycle.duration_s");

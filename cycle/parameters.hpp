@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "circulation/parameters.hpp"
+#include "circulation_case.hpp"
 #include "core/case.hpp"
 #include "coupling/immersed_flow.hpp"
 #include "fluid/flow.hpp"
@@ -30,7 +30,7 @@ struct Parameters {
   coupling::Spacing spacing;
   Tissue tissue;
   Masks masks;
-  circulation::Parameters circulation;
+  CirculationParameters circulation;
   double initialisation_s = 0.03, end_s = 0;
   int beats = 1;
   double anchor_drag = 0;  ///< uN s/mm

@@ -21,7 +21,7 @@ double smooth(double s) {
 
 }  // namespace
 
-Terminals::Terminals(const circulation::Parameters& p, double initialisation_s, double inertance)
+Terminals::Terminals(const CirculationParameters& p, double initialisation_s, double inertance)
     : parameters_(p), initialisation_s_(initialisation_s) {
   const bool heart = p.upstream == Upstream::heart, windkessel = p.downstream == Downstream::windkessel;
   double stored = p.aortic_Pa;

@@ -9,15 +9,15 @@
 #include <optional>
 
 #include "circulation/closed_loop.hpp"
-#include "circulation/parameters.hpp"
 #include "circulation/terminal.hpp"
+#include "circulation_case.hpp"
 
 namespace valsalva::cycle {
 
 class Terminals {
  public:
   /// inertance: rho length / area of the domain, g/mm4.
-  Terminals(const circulation::Parameters& p, double initialisation_s, double inertance);
+  Terminals(const CirculationParameters& p, double initialisation_s, double inertance);
 
   /// Brings both ends to time_s + dt_s. flows: along +z through the low and the high end, mm3/s.
   void advance(double time_s, double dt_s, double low_flow, double high_flow);
@@ -35,7 +35,7 @@ class Terminals {
   void restore(const std::vector<double>& saved);
 
  private:
-  circulation::Parameters parameters_;
+  CirculationParameters parameters_;
   double initialisation_s_;
   std::unique_ptr<circulation::Terminal> low_, high_;
   circulation::LeftHeart* heart_ = nullptr;

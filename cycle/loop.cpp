@@ -16,7 +16,7 @@
 #include <sstream>
 
 #include "circulation/closed_loop.hpp"
-#include "circulation/parameters.hpp"
+#include "circulation_case.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "scene/scene.hpp"
@@ -84,8 +84,8 @@ Options parse(int argc, char** argv) {
 
 std::string row_of(const Schema& schema, const Options& options, const std::vector<std::string>& overrides) {
   const Case scene = Case::load(options.file, schema, Fidelity::standard, overrides);
-  const circulation::Parameters p = circulation::read_parameters(scene);
-  if (p.upstream != circulation::Upstream::heart || p.downstream != circulation::Downstream::windkessel)
+  const cycle::CirculationParameters p = cycle::read_circulation(scene);
+  if (p.upstream != cycle::Upstream::heart || p.downstream != cycle::Downstream::windkessel)
     throw InputError("{}: the 0D loop needs circulation.upstream = \"heart\" and downstream = \"windkessel\"",
                      options.file);
   const circulation::PeriodicBeat b = circulation::periodic_beat(p.heart, p.windkessel, options.valve);

@@ -9,25 +9,25 @@
 #include "circulation/windkessel.hpp"
 #include "core/case.hpp"
 
-namespace valsalva::circulation {
+namespace valsalva::cycle {
 
 enum class Upstream { heart, flow, pressure, adapter, pump };
 enum class Downstream { windkessel, resistance, pressure };
 
-struct Parameters {
+struct CirculationParameters {
   Upstream upstream = Upstream::heart;
   Downstream downstream = Downstream::windkessel;
   double period_s = 0.8512;
-  LeftHeartParameters heart;
-  WindkesselParameters windkessel;
-  AdapterParameters adapter;
-  ChamberParameters pump;
-  std::optional<Waveform> flow, pressure;   ///< mm3/s, Pa: of the domain's end or of the pump
-  std::optional<Waveform> atrial_pressure;  ///< Pa, beside a pump
+  circulation::LeftHeartParameters heart;
+  circulation::WindkesselParameters windkessel;
+  circulation::AdapterParameters adapter;
+  circulation::ChamberParameters pump;
+  std::optional<circulation::Waveform> flow, pressure;   ///< mm3/s, Pa: of the domain's end or of the pump
+  std::optional<circulation::Waveform> atrial_pressure;  ///< Pa, beside a pump
   double end_diastolic_Pa = 0, aortic_Pa = 0, outlet_resistance = 0;
 };
 
 /// InputError names the case file and the key.
-Parameters read_parameters(const Case& scene);
+CirculationParameters read_circulation(const Case& scene);
 
-}  // namespace valsalva::circulation
+}  // namespace valsalva::cycle

@@ -1,11 +1,12 @@
-#include "circulation/parameters.hpp"
+#include "circulation_case.hpp"
 
 #include "core/errors.hpp"
 #include "core/units.hpp"
 
-namespace valsalva::circulation {
+namespace valsalva::cycle {
 namespace {
 
+using namespace circulation;
 using units::pa_per_mmHg;
 
 TwoHill chamber(const Case& scene, const std::string& name, double period_s, double shift) {
@@ -50,8 +51,8 @@ Waveform atrial_pressure(const Case& scene, double period_s) {
 
 }  // namespace
 
-Parameters read_parameters(const Case& scene) {
-  Parameters c;
+CirculationParameters read_circulation(const Case& scene) {
+  CirculationParameters c;
   const std::string up = scene.text("circulation.upstream"), down = scene.text("circulation.downstream");
   c.upstream = up == "heart"     ? Upstream::heart
                : up == "flow"    ? Upstream::flow
@@ -97,4 +98,4 @@ Parameters read_parameters(const Case& scene) {
   return c;
 }
 
-}  // namespace valsalva::circulation
+}  // namespace valsalva::cycle
