@@ -6,6 +6,7 @@
 #   make cohort COHORT=file.csv [JOBS=n]
 #   make verify                       the verification programs, with a table in runs/verify
 #   make lint [SINCE=commit]          clang-format, clang-tidy over all files or those changed since a commit
+#   make tradeoff | extremes          studies of error against time, and of values pushed until something gives
 #   make setup | build | bench | reference | clean
 
 CASE     ?= demo
@@ -23,7 +24,7 @@ OPTIONS  = $(if $(FIDELITY),--fidelity $(FIDELITY)) $(if $(NP),--ranks $(NP)) $(
            $(if $(RESUME),--resume) $(foreach pair,$(SET),--set $(pair))
 STAGES   = segment mesher stent crimp deploy cycle report
 
-.PHONY: demo test setup build run $(STAGES) cohort verify bench lint format reference clean
+.PHONY: demo test setup build run $(STAGES) cohort verify bench tradeoff extremes lint format reference clean
 
 demo: build
 	$(PIPELINE) run demo --fidelity $(or $(FIDELITY),draft) $(if $(NP),--ranks $(NP)) $(if $(FORCE),--force)
@@ -53,6 +54,12 @@ verify: build
 
 bench: build
 	python3 pipelines/bench.py
+
+tradeoff: build
+	for study in pipelines/tradeoff_*.py; do python3 $$study || exit; done
+
+extremes: build
+	for study in pipelines/extremes_*.py; do python3 $$study || exit; done
 
 lint: setup
 	@SINCE="$(SINCE)" sh pipelines/lint.sh

@@ -1,0 +1,278 @@
+"""make extremes, structural part: values pushed until accuracy, then the solution, is lost.
+
+    python3 pipelines/extremes_structure.py [OUT] [--crimp]    needs build/bin/valsalva-cycle (and -stent, -crimp)
+
+For each value: the exit code (0 solved; 2 refused as input; 3 stopped with the last good state), how far the result is
+from a closed form or from the same scene by other means, whether any output holds a NaN, whether a state was left, and
+the program's last message. Writes OUT/structure-extremes.csv (docs/results) and runs/extremes/structure.md.
+"""
+
+import csv
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import structure_runs as runs
+from tradeoff_structure import SOLID, TISSUE, strip, value
+
+FOLDER = runs.ROOT / "runs" / "extremes"
+ROWS = []
+
+
+def note(extreme, at, result, error=None, remark=""):
+    ROWS.append({"extreme": extreme, "value": at, "exit": "time out" if result["exit"] is None else result["exit"],
+                 "error": "" if error is None else f"{error:.2e}", "nan": "yes" if result["nan"] else "no",
+                 "state": "yes" if result["state"] else "no", "processor_s": f"{result['processor_s']:.1f}",
+                 "remark": remark or (result["message"] if result["exit"] else "")})
+    print(ROWS[-1], flush=True)
+
+
+def run(scene, name, **options):
+    return runs.run(scene, FOLDER / name, **options)
+
+
+def cube(law, stretch, steps, element="hex8"):
+    """A cube pulled along x to a stretch, its other faces free."""
+    faces = {"x0": (0, 0.0), "x1": (0, 1.0), "y0": (1, 0.0), "z0": (2, 0.0)}
+    return {"body": [dict(law, name="cube", kind="solid", shape="box", size_mm=[1.0, 1.0, 1.0], divisions=[1, 1, 1],
+                          element=element)],
+            "nodes": [{"name": face, "body": "cube", "select": "plane", "direction": [float(d == axis) for d in range(3)],
+                       "point_mm": [at, at, at]} for face, (axis, at) in faces.items()],
+            "support": [{"name": "left", "nodes": "x0", "hold": ["x"]}, {"name": "front", "nodes": "y0", "hold": ["y"]},
+                        {"name": "floor", "nodes": "z0", "hold": ["z"]},
+                        {"name": "pull", "nodes": "x1", "hold": ["x"], "displacement_mm": [stretch - 1, 0.0, 0.0]}],
+            "probe": [{"name": "force", "quantity": "reaction", "of": "pull", "component": "x"},
+                      {"name": "end", "of": "x1", "component": "x"}],
+            "dynamics": {"solver": "static", "load_steps": steps}}
+
+
+def fibre_strain():
+    """W = mu/2 (I1 - 3) + a/2b {exp[b (I4 - 1)^2] - 1}: P = mu (l - l^-2) + 2 a l (I4 - 1) exp[b (I4 - 1)^2]."""
+    mu, a, b = 1e4, 1e3, 10.0
+    law = {"law": "holzapfel", "law_parameters": [f"mu_Pa = {mu:g}", f"a1_Pa = {a:g}", f"b1 = {b:g}", "a2_Pa = 0",
+                                                  "b2 = 1"],
+           "volumetric": "quadratic", "bulk_modulus_kPa": 1e6, "fibres": "constant", "fibre_direction": [1.0, 0.0, 0.0],
+           "fibre_angles_deg": [0.0, 90.0]}
+    last = math.sqrt(1 + math.sqrt(math.log(1e12) / b))
+    result = run(cube(law, last, 60), "fibre_strain")
+    wanted = [1e1, 1e2, math.exp(6), 1e3, 1e6, 1e12]
+    for row in result.get("rows", []):
+        stretch = 1 + float(next(v for k, v in row.items() if k.startswith("end")))
+        force = float(next(v for k, v in row.items() if k.startswith("force")))
+        e = stretch ** 2 - 1
+        q = b * e * e
+        exact = 1e-6 * (mu * (stretch - stretch ** -2) + 2 * a * stretch * e * math.exp(q))
+        if wanted and math.exp(q) >= 0.999 * wanted[0]:
+            while wanted and math.exp(q) >= 0.999 * wanted[0]:
+                wanted.pop(0)
+            note("fibre strain", f"stretch {stretch:.3f}, exp(Q) = {math.exp(q):.2g}", result, abs(force / exact - 1),
+                 "force against the law without the cap at Q = 6")
+    if result["exit"]:
+        note("fibre strain", f"towards {last:.3f}", result)
+
+
+def stiffness():
+    def tip(factor, load):
+        scene = strip("hex27 mixed", 1)
+        scene["body"][0] |= {"law_parameters": [f"mu_Pa = {3e5 * factor:g}"], "bulk_modulus_kPa": 6000.0 * factor}
+        scene["load"] = [{"name": "end", "kind": "force", "nodes": "tip", "force_N": [0.0, 0.0, 1.4e-4 * load],
+                          "share": "area"}]
+        scene["dynamics"] = {"solver": "static", "load_steps": 2}
+        return run(scene, f"stiffness_{factor:g}_{load:g}")
+
+    soft = value(tip(1, 1), "tip")
+    for factor in (1e3, 1e6, 1e9):
+        result = tip(factor, factor)
+        found = value(result, "tip")
+        note("stiffness C10", f"x {factor:g}, load too", result, None if found is None else abs(found / soft - 1),
+             "tip against that of the soft strip" if not result["exit"] else "")
+    slope = value(tip(1, 1e-3), "tip")
+    result = tip(1e3, 1)
+    found = value(result, "tip")
+    note("stiffness C10", "x 1000, same load", result, None if found is None else abs(found / slope - 1),
+         "tip against the soft strip's at a thousandth of the load" if not result["exit"] else "")
+
+
+def thickness():
+    for share in (0.1, 0.25, 1, 3, 5, 10):
+        tips = {}
+        for kind in ("hex27 mixed", "shell kirchhoff", "shell hinge"):
+            scene = strip(kind, 2)
+            body, t = scene["body"][0], 0.4 * share
+            if kind.startswith("shell"):
+                body |= {"thickness_mm": t, "origin_mm": [0.0, 0.0, t / 2]}
+            else:
+                body["size_mm"] = [10.0, 2.0, t]
+            scene["probe"] = scene["probe"][:1]
+            scene["load"] = [{"name": "end", "kind": "force", "nodes": "tip", "force_N": [0.0, 0.0, 1.4e-4 * share ** 3],
+                              "share": "length" if kind.startswith("shell") else "area"}]
+            scene["dynamics"] = {"solver": "static", "load_steps": 2}
+            result = run(scene, f"thickness_{share:g}_{kind.replace(' ', '_')}")
+            tips[kind] = value(result, "tip") if result["exit"] == 0 else None
+            solid = tips["hex27 mixed"]
+            error = None if tips[kind] is None or solid is None or kind == "hex27 mixed" else abs(tips[kind] / solid - 1)
+            note("thickness", f"{100 * share:g} % of 0.4 mm, {kind}", result, error,
+                 "tip against hex27, load with the cube" if error is not None else "")
+
+
+SLIVER_NODES = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+
+
+def sliver_mesh(path, height):
+    """A cube of twelve tetrahedra round an inner node at this height above the floor: two of them are that flat."""
+    faces = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+    cells = []
+    for a, b, c, d in faces:
+        cells += [(a, c, b, 8), (a, d, c, 8)]
+    points = SLIVER_NODES + [(0.5, 0.45, height)]
+    lines = ["# vtk DataFile Version 2.0", "slivers", "ASCII", "DATASET UNSTRUCTURED_GRID", f"POINTS {len(points)} double"]
+    lines += [" ".join(repr(float(x)) for x in p) for p in points]
+    lines += [f"CELLS {len(cells)} {5 * len(cells)}"] + ["4 " + " ".join(map(str, c)) for c in cells]
+    lines += [f"CELL_TYPES {len(cells)}"] + ["10"] * len(cells)
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    Path(path).write_text("\n".join(lines) + "\n")
+
+
+def slivers():
+    """Pulled to a stretch of 1.2: homogeneous, so the force is exact on any mesh that can be solved at all."""
+    exact = None
+    for height in (0.5, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 0.0, -0.05):
+        scene = cube(SOLID, 1.2, 2)
+        name = f"sliver_{height:g}"
+        sliver_mesh(FOLDER / name / "mesh.vtk", height)
+        scene["body"][0] = dict(SOLID, name="cube", kind="solid", shape="file", file="mesh.vtk", formulation="displacement")
+        result = run(scene, name)
+        found = value(result, "force")
+        exact = exact or found
+        note("slivers" if height > 0 else "inverted start", f"height {height:g} of 1", result,
+             None if found is None or not exact or result["exit"] else abs(found / exact - 1),
+             "force against the regular mesh" if not result["exit"] else "")
+        if height >= 1e-6:
+            scene["dynamics"] = {"solver": "explicit", "end_s": 1e-5}
+            result = run(scene, name + "_explicit", timeout_s=120)
+            note("slivers", f"height {height:g}, explicit, 10 us", result, None, "" if result["exit"] else "runs")
+
+
+def inversion():
+    """The far face pushed through the near one."""
+    for steps in (1, 20):
+        result = run(cube(SOLID, -0.5, steps), f"inversion_{steps}")
+        reached = value(result, "end")
+        note("inverted start", f"pushed to -0.5 in {steps} steps", result, None,
+             f"last state at stretch {1 + reached:.3g}: {result['message']}" if reached is not None else "")
+
+
+def pressure():
+    for law_name, law in {"neo-Hookean": TISSUE,
+                          "contact-fsi-2021 fibres": {"material": "contact-fsi-2021/leaflet-fibre-reinforced",
+                                                      "fibres": "constant", "fibre_direction": [1.0, 0.0, 0.0],
+                                                      "density_g_per_mm3": 1.1e-3}}.items():
+        reached = {}
+        for n in (8, 16):
+            scene = {"body": [dict(law, name="sheet", kind="shell", shape="plate", size_mm=[5.0, 5.0], divisions=[n, n],
+                                   thickness_mm=0.4)],
+                     "nodes": [{"name": "rim1", "body": "sheet", "select": "group", "group": "start1"},
+                               {"name": "rim2", "body": "sheet", "select": "group", "group": "start2"},
+                               {"name": "middle1", "body": "sheet", "select": "group", "group": "end1"},
+                               {"name": "middle2", "body": "sheet", "select": "group", "group": "end2"},
+                               {"name": "centre", "body": "sheet", "select": "nearest", "point_mm": [5.0, 5.0, 0.0]}],
+                     "support": [{"name": "rim1", "nodes": "rim1", "hold": ["x", "y", "z"]},
+                                 {"name": "rim2", "nodes": "rim2", "hold": ["x", "y", "z"]},
+                                 {"name": "middle1", "nodes": "middle1", "hold": ["symmetry"], "normal": [1.0, 0.0, 0.0]},
+                                 {"name": "middle2", "nodes": "middle2", "hold": ["symmetry"], "normal": [0.0, 1.0, 0.0]}],
+                     "load": [{"name": "blood", "kind": "pressure", "body": "sheet", "pressure_kPa": 100.0}],
+                     "probe": [{"name": "rise", "of": "centre", "component": "z"}],
+                     "dynamics": {"solver": "static", "load_steps": 40}}
+            result = run(scene, f"pressure_{law_name.split()[0]}_{n}")
+            rows = result.get("rows", [])
+            reached[n] = [float(next(v for k, v in row.items() if k.startswith("rise"))) for row in rows]
+            note("load 750 mmHg", f"{law_name}, {n} x {n}", result,
+                 abs(reached[8][-1] / reached[16][-1] - 1) if n == 16 and len(reached[8]) == len(reached[16]) > 0 else None,
+                 (f"{100.0 * len(rows) / 40:.0f} kPa in history; " if result["exit"] else
+                  "rise of 8 x 8 against 16 x 16" if n == 16 else "") + (result["message"] if result["exit"] else ""))
+
+
+def struts():
+    for gap in (1.0, 1e-3, 1e-6, 1e-9, 0.0):
+        name = f"strut_{gap:g}"
+        points = [(0.0, 0.0, 0.0), (5.0, 0.0, 0.0), (5.0 + gap, 0.0, 0.0), (10.0, 0.0, 0.0)]
+        lines = ["# vtk DataFile Version 2.0", "struts", "ASCII", "DATASET UNSTRUCTURED_GRID", "POINTS 4 double"]
+        lines += [" ".join(map(repr, p)) for p in points] + ["CELLS 3 9", "2 0 1", "2 1 2", "2 2 3", "CELL_TYPES 3"]
+        path = FOLDER / name / "mesh.vtk"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("\n".join(lines + ["3", "3", "3"]) + "\n")
+        scene = {"body": [{"name": "frame", "kind": "beams", "shape": "file", "file": "mesh.vtk", "width_mm": 0.4,
+                           "depth_mm": 0.3, "young_kPa": 6e7, "poisson": 0.3, "density_g_per_mm3": 6.45e-3}],
+                 "nodes": [{"name": "root", "body": "frame", "select": "numbers", "numbers": [0]},
+                           {"name": "tip", "body": "frame", "select": "numbers", "numbers": [3]}],
+                 "support": [{"name": "clamp", "nodes": "root", "hold": ["all"]}],
+                 "load": [{"name": "end", "kind": "force", "nodes": "tip", "force_N": [0.0, 0.0, 1e-3]}],
+                 "probe": [{"name": "tip", "of": "tip", "component": "z"}],
+                 "dynamics": {"solver": "static", "load_steps": 1}}
+        result = run(scene, name)
+        found = value(result, "tip")
+        exact = 1e3 * 1e3 / (3 * 6e10 * 0.4 * 0.3 ** 3 / 12)  # P L^3/3EI, uN, mm, Pa
+        note("zero-length strut", f"{gap:g} mm", result, None if found is None else abs(found / exact - 1),
+             "tip against P L^3/3EI" if not result["exit"] else "")
+
+
+def time_step():
+    def let_go(dynamics, name):
+        scene = strip("hex8 mixed", 1)
+        scene["load"] = [{"name": "weight", "kind": "gravity", "acceleration_mm_per_s2": [0.0, 0.0, -1e4]}]
+        scene["dynamics"] = dict(dynamics, end_s=0.027, history_rows=10)
+        return run(scene, name)
+
+    right = let_go({"solver": "explicit"}, "step_reference")
+    tip = value(right, "tip")
+    note("time step", "explicit, stable", right, 0.0, "reference")
+    stable = 2.6e-6  # of this mesh, found by the first refusal's message if it differs
+    for factor in (10, 100, 1000):
+        for label, dynamics in {
+                "explicit": {"solver": "explicit", "step_s": factor * stable},
+                "explicit, masses scaled": {"solver": "explicit", "step_s": factor * stable, "mass_scaling": True},
+                "implicit": {"solver": "implicit", "step_s": factor * stable}}.items():
+            result = let_go(dynamics, f"step_{label.replace(', ', '_').replace(' ', '_')}_{factor}")
+            found = value(result, "tip")
+            note("time step", f"{factor} x stable, {label}", result,
+                 None if found is None or result["exit"] else abs(found / tip - 1),
+                 "tip at 27 ms against the stable explicit run" if not result["exit"] else "")
+
+
+def crimp():
+    """The smallest device of the tests, crimped to ever smaller diameters."""
+    case = runs.ROOT / "tests" / "stages" / "chain" / "small.toml"
+    build = runs.ROOT / "build" / "bin"
+    subprocess.run([build / "valsalva-stent", case, "--out", FOLDER / "stent"], check=True, stdout=subprocess.DEVNULL)
+    state = max((FOLDER / "stent").glob("state_*.h5"))
+    for diameter in (5.7, 4.0, 3.0):
+        out = FOLDER / f"crimp_{diameter:g}"
+        done = subprocess.run([build / "valsalva-crimp", case, "--from", state, "--out", out, "--set",
+                               f"crimp.diameter_mm={diameter:g}"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True)
+        summary = out / "summary.json"
+        text = summary.read_text() if summary.exists() else ""
+        note("crimp", f"{diameter:g} mm", {"exit": done.returncode, "nan": "nan" in text.lower(), "processor_s": 0.0,
+                                           "state": any(out.glob("state_*.h5")), "message": done.stdout.strip()[-300:]})
+
+
+def main():
+    words = [word for word in sys.argv[1:] if not word.startswith("--")]
+    out = Path(words[0]) if words else runs.ROOT / "docs" / "results"
+    for part in (fibre_strain, stiffness, thickness, slivers, inversion, pressure, struts, time_step):
+        part()
+    if "--crimp" in sys.argv:
+        crimp()
+    out.mkdir(parents=True, exist_ok=True)
+    with open(out / "structure-extremes.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, ROWS[0].keys())
+        writer.writeheader()
+        writer.writerows(ROWS)
+    page = FOLDER / "structure.md"
+    page.write_text(runs.table(ROWS[0].keys(), [row.values() for row in ROWS]) + "\n")
+    print(f"written: {out / 'structure-extremes.csv'}, {page}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,83 @@
+"""Runs of structural scenes for the studies tradeoff_structure.py and extremes_structure.py: a scene is written as a case
+file, run by valsalva-cycle, and read back."""
+
+import csv
+import json
+import math
+import os
+import resource
+import subprocess
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def toml(scene):
+    """A dictionary of tables (dictionaries) and repeated tables (lists of them) as a case file."""
+    def value(v):
+        if isinstance(v, bool):
+            return "true" if v else "false"
+        if isinstance(v, str):
+            return json.dumps(v)
+        if isinstance(v, (list, tuple)):
+            return "[" + ", ".join(value(x) for x in v) + "]"
+        return repr(v)
+
+    lines = []
+    for name, tables in scene.items():
+        for table in tables if isinstance(tables, list) else [tables]:
+            lines.append(f"[[{name}]]" if isinstance(tables, list) else f"[{name}]")
+            lines += [f"{key} = {value(v)}" for key, v in table.items()]
+    return "\n".join(lines) + "\n"
+
+
+def run(scene, folder, timeout_s=900, threads=1):
+    """What came of it: exit code, the last message, seconds, metrics, last row of the history, whether a NaN was found,
+    whether a state was left."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    case = folder / "case.toml"
+    case.write_text(scene if isinstance(scene, str) else toml(scene))
+    words = [str(ROOT / "build" / "bin" / "valsalva-cycle"), str(case), "--out", str(folder / "out")]
+    for old in (folder / "out").glob("*"):
+        old.unlink()
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    try:
+        done = subprocess.run(words, env=dict(os.environ, OMP_NUM_THREADS=str(threads)), stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=timeout_s)
+        code, text = done.returncode, done.stdout
+    except subprocess.TimeoutExpired as expired:
+        code, text = None, (expired.stdout or b"").decode()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    result = {"exit": code, "wall_s": time.monotonic() - start,
+              "processor_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+              "message": next((line for line in reversed(text.splitlines()) if "error" in line.lower()),
+                              text.strip().splitlines()[-1] if text.strip() else ""),
+              "metrics": {}, "last": {}, "nan": False, "state": any((folder / "out").glob("state_*.h5"))}
+    summary = folder / "out" / "summary.json"
+    if summary.exists():
+        text = summary.read_text()
+        result["nan"] |= "nan" in text.lower()
+        if not result["nan"]:
+            result["metrics"] = {name: entry.get("value") if isinstance(entry, dict) else entry
+                                 for name, entry in json.loads(text).get("metrics", {}).items()}
+    history = folder / "out" / "history.csv"
+    if history.exists():
+        with open(history, newline="") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        for row in rows:
+            for entry in row.values():
+                try:
+                    result["nan"] |= not math.isfinite(float(entry))
+                except (TypeError, ValueError):
+                    pass
+        if rows:
+            result["last"] = {key: float(v) for key, v in rows[-1].items() if v not in (None, "")}
+        result["rows"] = rows
+    return result
+
+
+def table(header, rows):
+    return "\n".join(["| " + " | ".join(header) + " |", "|" + "---|" * len(header)] +
+                     ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
