@@ -16,23 +16,31 @@ int chunks_for(std::size_t pairs) {
   return static_cast<int>((pairs + chunk_size - 1) / chunk_size);
 }
 
-Nearest nearest_points(const Points& x, const std::array<int, 4>& n) {
-  return point_triangle(x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
-}
-Nearest nearest_edges(const Points& x, const std::array<int, 4>& n) {
-  return edge_edge(x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
+std::array<Vec3, 4> places(const Points& x, const std::array<int, 4>& n) {
+  return {x[n[0]], x[n[1]], x[n[2]], x[n[3]]};
 }
 
 }  // namespace
 
-BodyContact::BodyContact(Candidates candidates, Law law) : candidates_(std::move(candidates)), law_(law) {}
+BodyContact::BodyContact(Candidates candidates, Law law, double slip_share, std::string name)
+    : candidates_(std::move(candidates)), law_(law), name_(std::move(name)), friction_(slip_share) {}
 
 void BodyContact::begin_step(const structure::Configuration& now, double) {
   candidates_.update(now.x);
+  if (!candidates_.any_friction()) return;
+  find_active(now.x);
+  std::vector<PairFriction*> pairs;
+  std::vector<double> normal_force;
+  for (auto& chunk : active_)
+    for (Active& pair : chunk) {
+      if (pair.friction.coefficient <= 0) continue;
+      pairs.push_back(&pair.friction);
+      normal_force.push_back(pair.at.pressure);
+    }
+  friction_.accept(std::move(pairs), normal_force, now.x);
 }
 
-template <class Distance>
-void BodyContact::find_active(const Points& x, const std::vector<FeaturePair>& pairs, Distance&& distance,
+void BodyContact::find_active(const Points& x, const std::vector<FeaturePair>& pairs, PairKind kind,
                               std::size_t first_chunk) const {
   const int chunks = chunks_for(pairs.size());
 #pragma omp parallel for schedule(dynamic)
@@ -42,36 +50,45 @@ void BodyContact::find_active(const Points& x, const std::vector<FeaturePair>& p
     const std::size_t end = std::min(pairs.size(), static_cast<std::size_t>(c + 1) * chunk_size);
     for (std::size_t i = static_cast<std::size_t>(c) * chunk_size; i < end; ++i) {
       const FeaturePair& pair = pairs[i];
-      const Nearest near = distance(x, pair.node);
+      const Nearest near = nearest(kind, places(x, pair.node));
       const double d = near.distance, h = pair.contact_distance_mm;
       if (d >= h) continue;
-      own.push_back({pair.node, near.weight, near.direction, d, h, pair.modulus_area_uN,
-                     normal_pressure(law_, pair.modulus_area_uN, d, h)});
+      own.push_back({kind,
+                     pair.node,
+                     near.weight,
+                     near.direction,
+                     d,
+                     h,
+                     pair.modulus_area_uN,
+                     normal_pressure(law_, pair.modulus_area_uN, d, h),
+                     {}});
+      if (pair.friction > 0) own.back().friction = friction_.at(kind, pair, x, near, own.back().at.pressure);
     }
   }
 }
 
 void BodyContact::find_active(const Points& x) const {
   if (found_at_ == x) return;
+  candidates_.update(x);
   const auto& points = candidates_.point_triangle();
   const auto& edges = candidates_.edge_edge();
   const std::size_t first = chunks_for(points.size());
   active_.resize(first + chunks_for(edges.size()));
-  find_active(x, points, nearest_points, 0);
-  find_active(x, edges, nearest_edges, first);
+  find_active(x, points, PairKind::point_triangle, 0);
+  find_active(x, edges, PairKind::edge_edge, first);
   found_at_ = x;
   report_ = {};
   report_.smallest_distance_mm = candidates_.parameters().near_skin_mm;
   for (const auto& chunk : active_)
     for (const Active& pair : chunk) {
       ++report_.active;
+      report_.slipping += pair.friction.slips();
       report_.penetration_mm = std::max(report_.penetration_mm, pair.contact_distance_mm - pair.distance_mm);
       report_.smallest_ratio = std::min(report_.smallest_ratio, pair.distance_mm / pair.contact_distance_mm);
       report_.smallest_distance_mm = std::min(report_.smallest_distance_mm, pair.distance_mm);
     }
 }
 
-// Every thread adds to its own nodes only, each node's contributions in the order of the pairs.
 void BodyContact::scatter(Points& force) const {
   const int nodes = static_cast<int>(force.size());
 #pragma omp parallel
@@ -83,7 +100,9 @@ void BodyContact::scatter(Points& force) const {
       for (const Active& pair : chunk)
         for (int k = 0; k < 4; ++k) {
           const int node = pair.node[k];
-          if (node >= begin && node < end) force[node] += pair.weight[k] * pair.at.pressure * pair.direction;
+          if (node < begin || node >= end) continue;
+          force[node] += pair.weight[k] * pair.at.pressure * pair.direction;
+          if (pair.friction.coefficient > 0) force[node] += pair.weight[k] * pair.friction.on_first;
         }
   }
 }
@@ -99,13 +118,14 @@ double BodyContact::add_forces(const structure::Configuration& now, structure::F
 
 void BodyContact::add_stiffness_bound(const structure::Configuration& now,
                                       structure::StiffnessBound& out) const {
-  constexpr double approach = 0.8;
   find_active(now.x);
   for (const auto& chunk : active_)
     for (const Active& pair : chunk) {
       const double d = approach * pair.distance_mm, h = pair.contact_distance_mm;
       const Pressure p = normal_pressure(law_, pair.modulus_area_uN, d, h);
-      const double lateral = p.pressure / std::max(d, 1e-3 * h);
+      double lateral = p.pressure / std::max(d, 1e-3 * h);
+      const double mu = pair.friction.coefficient;
+      if (mu > 0) lateral += mu * (p.pressure / pair.friction.range_mm + p.stiffness);
       for (int k = 0; k < 4; ++k)
         out.translation[pair.node[k]] += 2 * std::abs(pair.weight[k]) * (p.stiffness + lateral);
     }
@@ -116,13 +136,59 @@ double BodyContact::penetration_mm(const Points& x, const std::string& body, con
   const int a = mesh.body(body), b = mesh.body(other);
   const auto wanted = [&](int p, int q) { return (p == a && q == b) || (p == b && q == a); };
   double most = 0;
+  const auto check = [&](const FeaturePair& pair, PairKind kind) {
+    most = std::max(most, pair.contact_distance_mm - nearest(kind, places(x, pair.node)).distance);
+  };
   for (const auto& pair : candidates_.point_triangle())
     if (wanted(mesh.vertices()[pair.first].body, mesh.faces()[pair.second].body))
-      most = std::max(most, pair.contact_distance_mm - nearest_points(x, pair.node).distance);
+      check(pair, PairKind::point_triangle);
   for (const auto& pair : candidates_.edge_edge())
     if (wanted(mesh.edges()[pair.first].body, mesh.edges()[pair.second].body))
-      most = std::max(most, pair.contact_distance_mm - nearest_edges(x, pair.node).distance);
+      check(pair, PairKind::edge_edge);
   return most;
+}
+
+Points BodyContact::forces(const Points& x) const {
+  find_active(x);
+  Points force(x.size(), Vec3::Zero());
+  scatter(force);
+  return force;
+}
+
+double BodyContact::limited(const Points& from, const Points& to, const std::vector<FeaturePair>& pairs,
+                            PairKind kind, double share) const {
+  const int chunks = chunks_for(pairs.size());
+  std::vector<double> least(chunks, share);
+#pragma omp parallel for schedule(dynamic)
+  for (int c = 0; c < chunks; ++c) {
+    const std::size_t end = std::min(pairs.size(), static_cast<std::size_t>(c + 1) * chunk_size);
+    for (std::size_t i = static_cast<std::size_t>(c) * chunk_size; i < end; ++i) {
+      const std::array<Vec3, 4> x0 = places(from, pairs[i].node), x1 = places(to, pairs[i].node);
+      const double distance = nearest(kind, x0).distance;
+      if (distance > 0)
+        least[c] = std::min(
+            least[c],
+            allowed_share(kind, x0, x1, approach * std::min(distance, pairs[i].contact_distance_mm)));
+    }
+  }
+  for (double own : least) share = std::min(share, own);
+  return share;
+}
+
+double BodyContact::allowed_motion(const structure::Configuration& now, const Points& to) const {
+  const Candidates::Swept pairs = candidates_.along(now.x, to);
+  const double share = limited(now.x, to, pairs.point_triangle, PairKind::point_triangle, 1);
+  return limited(now.x, to, pairs.edge_edge, PairKind::edge_edge, share);
+}
+
+structure::Snapshot BodyContact::save() const {
+  return candidates_.any_friction() ? friction_.save() : structure::Snapshot{};
+}
+
+void BodyContact::restore(const structure::Snapshot& snapshot) {
+  if (!candidates_.any_friction()) return;
+  friction_.restore(snapshot, name_);
+  found_at_.clear();
 }
 
 int BodyContact::limit_velocities(structure::System& system, double dt_s) {

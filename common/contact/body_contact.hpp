@@ -1,14 +1,21 @@
-// Contact between deformable bodies, and of each with itself: point-triangle and edge-edge pairs.
+// Contact between deformable bodies, and of each with itself: point-triangle and edge-edge pairs, with
+// Coulomb friction.
 //
 // Energy: sum over pairs of A psi(d), with the pressure law of pressure_law.hpp, d the distance of the
 // features' middles, h the sum of their radii or what the pair of bodies has set, A the features' area. A
 // point that rests on a mesh is met by one or two point-triangle and a few edge-edge pairs, so that the
 // pressure at a given distance is three to five times p(d): read K as a stiffness scale, not as a material
-// constant. No friction between bodies.
+// constant.
 //
-// A pair's forces sum to zero and to no moment, to round-off. Sums have a fixed order.
+// Friction: body_friction.hpp; the coefficient belongs to a pair of bodies (BodyPairSettings::friction).
+//
+// A pair's forces sum to zero, and without friction to no moment, to round-off. Sums have a fixed order.
+//
+// Nothing passes through anything: `allowed_motion` says how much of a motion may be made (adaptive explicit
+// steps and Newton's method ask it), by continuous detection; `limit_velocities` is for fixed explicit steps.
 #pragma once
 
+#include "contact/body_friction.hpp"
 #include "contact/candidates.hpp"
 #include "contact/pressure_law.hpp"
 #include "structure/force_term.hpp"
@@ -21,22 +28,38 @@ struct ContactReport {
   double penetration_mm = 0;        ///< largest h - d
   double smallest_ratio = 1;        ///< smallest d / h of active pairs
   double smallest_distance_mm = 0;  ///< of active pairs; at most the near skin
+  long slipping = 0;                ///< pairs whose friction is at Coulomb's limit
 };
 
 class BodyContact : public structure::ForceTerm {
  public:
-  BodyContact(Candidates candidates, Law law);
+  /// slip_share: how far a pair gives way before it slips, over its contact distance. The name tells terms of
+  /// one system apart in restarts.
+  BodyContact(Candidates candidates, Law law, double slip_share = 0.05,
+              std::string name = "contact between bodies");
 
-  std::string name() const override { return "contact between bodies"; }
+  std::string name() const override { return name_; }
   void begin_step(const structure::Configuration& now, double dt_s) override;
+  /// The energy is that of the normal law; friction stores none.
   double add_forces(const structure::Configuration& now, structure::Forces& out) const override;
   /// Block row sums |w_i| sum_j |w_j| (A psi'' + A p / d), taken at 0.8 d, so that they stay bounds while a
-  /// pair approaches by a fifth.
+  /// pair approaches by a fifth; of friction mu (A p/u + A psi'') more, u the range of stick.
   void add_stiffness_bound(const structure::Configuration& now,
                            structure::StiffnessBound& out) const override;
   bool stiffness_is_abrupt() const override { return true; }
+  /// Exact for the normal law, with the change of the nearest points; friction with the present normal and
+  /// nearest points kept. Symmetric without friction.
+  void add_tangent(const structure::Configuration& now, structure::BlockMatrix& out) const override;
+  /// The share of the motion to `to` at which no pair is nearer than 0.8 of what it was, or of its contact
+  /// distance: nothing crosses, and the stiffness bound still holds there.
+  double allowed_motion(const structure::Configuration& now, const Points& to) const override;
+  /// Friction's history; nothing without friction.
+  structure::Snapshot save() const override;
+  void restore(const structure::Snapshot& snapshot) override;
 
   const ContactReport& report() const { return report_; }
+  /// Energy that friction has taken out, up to the last begin_step, nJ.
+  double friction_work_nJ() const { return friction_.work_nJ(); }
   const Candidates& candidates() const { return candidates_; }
   /// For changing the settings.
   Candidates& candidates() {
@@ -46,6 +69,8 @@ class BodyContact : public structure::ForceTerm {
 
   /// Largest h - d of the pairs of two bodies at these positions, 0 when none is in contact.
   double penetration_mm(const Points& x, const std::string& body, const std::string& other) const;
+  /// Forces on all nodes of the system at these positions, friction included.
+  Points forces(const Points& x) const;
 
   /// The step guard: no node moves more than a quarter of the distance to the nearest feature of its near
   /// pairs in one step, hence no pair can pass through itself. Shortens velocities where needed; returns how
@@ -56,21 +81,28 @@ class BodyContact : public structure::ForceTerm {
  private:
   /// A pair in contact.
   struct Active {
+    PairKind kind;
     std::array<int, 4> node;
     std::array<double, 4> weight;
     Vec3 direction;
     double distance_mm, contact_distance_mm, modulus_area_uN;
     Pressure at;
+    PairFriction friction;
   };
+  static constexpr double approach = 0.8;  // by which pairs may come nearer within a step
+
   /// Finds the pairs in contact at x, unless x is where they were found last.
   void find_active(const Points& x) const;
-  template <class Distance>
-  void find_active(const Points& x, const std::vector<FeaturePair>& pairs, Distance&& distance,
+  void find_active(const Points& x, const std::vector<FeaturePair>& pairs, PairKind kind,
                    std::size_t first_chunk) const;
   void scatter(Points& force) const;
+  double limited(const Points& from, const Points& to, const std::vector<FeaturePair>& pairs, PairKind kind,
+                 double share) const;
 
-  Candidates candidates_;
+  mutable Candidates candidates_;  // lists are renewed when trial positions leave their reach
   Law law_;
+  std::string name_;
+  Friction friction_;
   // The pairs in contact at found_at_, in the order of the lists: forces, bounds and the guard of one
   // configuration share them.
   mutable std::vector<std::vector<Active>> active_;

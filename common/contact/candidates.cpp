@@ -51,9 +51,10 @@ const auto& nodes_of(const Feature& feature) {
   return feature.node;
 }
 
-/// Boxes around features, each with its share of the contact distance and of the skin.
+/// Boxes around features (on the way from x to `to`, unless null), each with its share of the contact
+/// distance and of the skin.
 template <class Feature>
-std::vector<Box> boxes_around(const Points& x, const std::vector<Feature>& features,
+std::vector<Box> boxes_around(const Points& x, const Points* to, const std::vector<Feature>& features,
                               const std::vector<int>& chosen, double distance, double skin) {
   std::vector<Box> boxes;
   boxes.reserve(chosen.size());
@@ -63,6 +64,9 @@ std::vector<Box> boxes_around(const Points& x, const std::vector<Feature>& featu
     for (int node : nodes) {
       box.low = box.low.cwiseMin(x[node]);
       box.high = box.high.cwiseMax(x[node]);
+      if (!to) continue;
+      box.low = box.low.cwiseMin((*to)[node]);
+      box.high = box.high.cwiseMax((*to)[node]);
     }
     const double margin = (distance > 0 ? 0.5 * distance : features[i].radius_mm) + 0.5 * skin;
     box.low.array() -= margin;
@@ -122,42 +126,71 @@ bool Candidates::shares_node(const std::array<int, 4>& node, int first) const {
   return false;
 }
 
-bool Candidates::complete(const Points& x, int body, int other, double radii, double area, Distance distance,
-                          FeaturePair& pair) const {
+bool Candidates::complete(const Where& where, int body, int other, double radii, double area,
+                          Distance distance, FeaturePair& pair) const {
   const BodyPairSettings& own = settings(body, other);
   double h = own.distance_mm > 0 ? own.distance_mm : radii;
-  pair.wide_distance_mm = distance(x, pair);
-  if (pair.wide_distance_mm >= h + parameters_.wide_skin_mm) return false;
+  if (!where.to) {
+    pair.wide_distance_mm = distance(where.x, pair);
+    if (pair.wide_distance_mm >= h + where.skin) return false;
+  }
   if (mesh_.bodies()[body].group == mesh_.bodies()[other].group)
     h = std::min(h, parameters_.rest_factor * distance(mesh_.reference(), pair));
   pair.contact_distance_mm = h;
   pair.modulus_area_uN = (own.modulus_Pa > 0 ? own.modulus_Pa : parameters_.modulus_Pa) * area;
+  pair.friction = own.friction;
+  pair.second_body = other;
   return h > 1e-6;
 }
 
-void Candidates::update_wide(const Points& x) {
-  ++wide_updates_;
-  wide_at_ = x;
-  wide_point_.clear();
-  wide_edge_.clear();
+void Candidates::find(const Where& where, std::vector<FeaturePair>& points,
+                      std::vector<FeaturePair>& pairs_of_edges) const {
+  points.clear();
+  pairs_of_edges.clear();
   const int bodies = static_cast<int>(mesh_.bodies().size());
   const auto vertices = by_body(mesh_.vertices(), bodies), edges = by_body(mesh_.edges(), bodies),
              faces = by_body(mesh_.faces(), bodies);
   for (int a = 0; a < bodies; ++a)
     for (int b = a; b < bodies; ++b) {
       if (!settings(a, b).active) continue;
-      append(wide_point_, points_near_faces(x, vertices[a], faces[b], settings(a, b).distance_mm));
-      if (a != b)
-        append(wide_point_, points_near_faces(x, vertices[b], faces[a], settings(a, b).distance_mm));
-      append(wide_edge_, edges_near_edges(x, edges[a], edges[b], settings(a, b).distance_mm, a == b));
+      const double distance = settings(a, b).distance_mm;
+      append(points, points_near_faces(where, vertices[a], faces[b], distance));
+      if (a != b) append(points, points_near_faces(where, vertices[b], faces[a], distance));
+      append(pairs_of_edges, edges_near_edges(where, edges[a], edges[b], distance, a == b));
     }
 }
 
-std::vector<FeaturePair> Candidates::points_near_faces(const Points& x, const std::vector<int>& vertices,
+void Candidates::update_wide(const Points& x) {
+  ++wide_updates_;
+  wide_at_ = x;
+  find({x, nullptr, parameters_.wide_skin_mm}, wide_point_, wide_edge_);
+}
+
+Candidates::Swept Candidates::along(const Points& from, const Points& to) const {
+  const auto holds = [&](const Points& made_at, double skin) {
+    return made_at.size() == to.size() && largest_motion(from, made_at) < 0.5 * skin &&
+           largest_motion(to, made_at) < 0.5 * skin;
+  };
+  // The near list is cut from the wide one and holds only while that does.
+  if (holds(wide_at_, parameters_.wide_skin_mm)) {
+    if (holds(near_at_, parameters_.near_skin_mm)) return {near_point_, near_edge_};
+    return {wide_point_, wide_edge_};
+  }
+  Swept swept;
+  find({from, &to, 0}, swept.point_triangle, swept.edge_edge);
+  return swept;
+}
+
+bool Candidates::any_friction() const {
+  return std::any_of(settings_.begin(), settings_.end(),
+                     [](const BodyPairSettings& s) { return s.active && s.friction > 0; });
+}
+
+std::vector<FeaturePair> Candidates::points_near_faces(const Where& where, const std::vector<int>& vertices,
                                                        const std::vector<int>& faces, double distance) const {
-  const double skin = parameters_.wide_skin_mm;
-  const auto found = overlapping_boxes(boxes_around(x, mesh_.vertices(), vertices, distance, skin),
-                                       boxes_around(x, mesh_.faces(), faces, distance, skin), false);
+  const auto found =
+      overlapping_boxes(boxes_around(where.x, where.to, mesh_.vertices(), vertices, distance, where.skin),
+                        boxes_around(where.x, where.to, mesh_.faces(), faces, distance, where.skin), false);
   return collect(found.size(), [&](std::size_t i, FeaturePair& pair) {
     pair.first = vertices[found[i][0]];
     pair.second = faces[found[i][1]];
@@ -165,23 +198,23 @@ std::vector<FeaturePair> Candidates::points_near_faces(const Points& x, const st
     const Face& f = mesh_.faces()[pair.second];
     pair.node = {v.node, f.node[0], f.node[1], f.node[2]};
     return !shares_node(pair.node, 1) &&
-           complete(x, v.body, f.body, v.radius_mm + f.radius_mm, v.area_mm2, distance_of_points, pair);
+           complete(where, v.body, f.body, v.radius_mm + f.radius_mm, v.area_mm2, distance_of_points, pair);
   });
 }
 
-std::vector<FeaturePair> Candidates::edges_near_edges(const Points& x, const std::vector<int>& edges,
+std::vector<FeaturePair> Candidates::edges_near_edges(const Where& where, const std::vector<int>& edges,
                                                       const std::vector<int>& others, double distance,
                                                       bool same) const {
-  const double skin = parameters_.wide_skin_mm;
-  const auto found = overlapping_boxes(boxes_around(x, mesh_.edges(), edges, distance, skin),
-                                       boxes_around(x, mesh_.edges(), others, distance, skin), same);
+  const auto found =
+      overlapping_boxes(boxes_around(where.x, where.to, mesh_.edges(), edges, distance, where.skin),
+                        boxes_around(where.x, where.to, mesh_.edges(), others, distance, where.skin), same);
   return collect(found.size(), [&](std::size_t i, FeaturePair& pair) {
     pair.first = edges[found[i][0]];
     pair.second = others[found[i][1]];
     const ContactEdge& a = mesh_.edges()[pair.first];
     const ContactEdge& b = mesh_.edges()[pair.second];
     pair.node = {a.node[0], a.node[1], b.node[0], b.node[1]};
-    return !shares_node(pair.node, 2) && complete(x, a.body, b.body, a.radius_mm + b.radius_mm,
+    return !shares_node(pair.node, 2) && complete(where, a.body, b.body, a.radius_mm + b.radius_mm,
                                                   std::min(a.area_mm2, b.area_mm2), distance_of_edges, pair);
   });
 }

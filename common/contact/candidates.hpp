@@ -20,6 +20,7 @@ struct BodyPairSettings {
   bool active = true;
   double distance_mm = 0;  ///< contact distance; 0: the sum of the two radii
   double modulus_Pa = 0;   ///< K of the pressure law; 0: the common one
+  double friction = 0;     ///< Coulomb's coefficient
 };
 
 struct CandidateParameters {
@@ -35,6 +36,8 @@ struct FeaturePair {
   int first, second;           ///< indices into vertices and faces, or edges and edges
   double contact_distance_mm;  ///< h
   double modulus_area_uN;      ///< K A, A the smaller of the two features' areas (the vertex's with a face)
+  double friction;             ///< Coulomb's coefficient
+  int second_body;             ///< of the second feature
   double wide_distance_mm;     ///< distance when the wide list was made
 };
 
@@ -49,6 +52,13 @@ class Candidates {
   void update(const Points& x);
   const std::vector<FeaturePair>& point_triangle() const { return near_point_; }
   const std::vector<FeaturePair>& edge_edge() const { return near_edge_; }
+  /// Every pair that may come nearer than its contact distance while nodes move on straight lines: from the
+  /// lists when they hold that long, by a broad phase over swept boxes otherwise.
+  struct Swept {
+    std::vector<FeaturePair> point_triangle, edge_edge;
+  };
+  Swept along(const Points& from, const Points& to) const;
+  bool any_friction() const;
   const CollisionMesh& mesh() const { return mesh_; }
   const CandidateParameters& parameters() const { return parameters_; }
   long wide_updates() const { return wide_updates_; }
@@ -58,13 +68,20 @@ class Candidates {
   using Distance = double (*)(const Points&, const FeaturePair&);
   const BodyPairSettings& settings(int body, int other) const;
   bool shares_node(const std::array<int, 4>& node, int first) const;
+  /// Where pairs are looked for: near the positions x, or, when there is a `to`, on the way there.
+  struct Where {
+    const Points& x;
+    const Points* to = nullptr;
+    double skin = 0;
+  };
   /// Fills in what depends on distance and bodies; false when the pair is out of reach.
-  bool complete(const Points& x, int body, int other, double radii, double area, Distance distance,
+  bool complete(const Where& where, int body, int other, double radii, double area, Distance distance,
                 FeaturePair& pair) const;
-  std::vector<FeaturePair> points_near_faces(const Points& x, const std::vector<int>& vertices,
+  std::vector<FeaturePair> points_near_faces(const Where& where, const std::vector<int>& vertices,
                                              const std::vector<int>& faces, double distance) const;
-  std::vector<FeaturePair> edges_near_edges(const Points& x, const std::vector<int>& edges,
+  std::vector<FeaturePair> edges_near_edges(const Where& where, const std::vector<int>& edges,
                                             const std::vector<int>& others, double distance, bool same) const;
+  void find(const Where& where, std::vector<FeaturePair>& points, std::vector<FeaturePair>& edges) const;
   void update_wide(const Points& x);
   void update_near(const Points& x);
   void forget();

@@ -144,6 +144,15 @@ void Equations::move(const Eigen::VectorXd& unknowns) {
   }
 }
 
+double Equations::allowed(const Eigen::VectorXd& increment) {
+  const Configuration before = system_.state;
+  move(increment);
+  double share = 1;
+  for (const auto& term : terms_) share = std::min(share, term->allowed_motion(before, system_.state.x));
+  system_.state = before;
+  return share;
+}
+
 Eigen::VectorXd Equations::missing(double time_s) const {
   Eigen::VectorXd gap = Eigen::VectorXd::Zero(unknowns());
   for (const Prescribed& p : prescribed_)
@@ -228,10 +237,11 @@ void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& ma
           report.residual, settings.max_iterations, equations.worst(residual));
     problem.tangent(matrix);
     report.linear = solver.solve(matrix, equations.fixed(), residual, u, now.x);
+    const double allowed = equations.allowed(u);
     const double start = along(residual, u);
     const Configuration before = now;
     Trial best, trial;
-    double best_step = 0, step = 1;
+    double best_step = 0, step = allowed;
     for (int halving = 0;; ++halving) {
       now.x = before.x;
       now.rotation = before.rotation;

@@ -5,13 +5,14 @@
 // by the exponential of the spin, R <- exp(w) R. The force terms are those of the explicit integrator; each
 // brings its tangent by ForceTerm::add_tangent.
 //
-// Newton: K du = r with the prescribed motion still missing as given part of du. Steps that reverse an
-// element are halved. When this does not converge it starts again with a line search: halved too when neither
-// |r| nor |r . du| falls (Crisfield 1991, section 9.2; not while prescribed motion is missing, when both may
-// rise). The search comes second because slender bodies converge through states of large residual. Converged
-// when the prescribed motion is complete and |r| <= tolerance x (sum of the norms of the terms' forces,
-// moments divided by the length of the scene), or when the increment is below increment_tolerance x length
-// and |r| below 1e-4 of that sum, where round-off stops.
+// Newton: K du = r with the prescribed motion still missing as given part of du. An increment that would take
+// bodies through each other is cut to the share that the terms allow. When a full step reverses an element,
+// or this does not converge, it starts again with a line search: steps are halved when they reverse an
+// element or neither |r| nor |r . du| falls (Crisfield 1991, section 9.2; not while prescribed motion is
+// missing, when both may rise). The search comes second because slender bodies converge through states of
+// large residual. Converged when the prescribed motion is complete and |r| <= tolerance x (sum of the norms
+// of the terms' forces, moments divided by the length of the scene), or when the increment is below
+// increment_tolerance x length and |r| below 1e-4 of that sum, where round-off stops.
 #pragma once
 
 #include <functional>
@@ -94,6 +95,8 @@ class Equations {
   void tangent(structure::BlockMatrix& k) const;
   structure::BlockMatrix matrix() const { return {system_.nodes(), system_.rotational_nodes()}; }
   void move(const Eigen::VectorXd& increment);
+  /// The share of an increment that the terms allow (ForceTerm::allowed_motion); the state stays.
+  double allowed(const Eigen::VectorXd& increment);
   /// Prescribed minus present positions (rotations: the spin that is missing) where fixed, zero elsewhere.
   Eigen::VectorXd missing(double time_s) const;
   /// Norm over the free unknowns, moments divided by the length.

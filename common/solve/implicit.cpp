@@ -110,7 +110,7 @@ void ImplicitIntegrator::step() {
     Eigen::VectorXd guess = dt * v0;
     for (int i = 0; i < equations_.unknowns(); ++i)
       if (equations_.fixed()[i]) guess[i] = 0;
-    equations_.move(guess);
+    equations_.move(equations_.allowed(guess) * guess);
     try {
       double size = 0, stored = 0;
       equations_.forces(size, stored);

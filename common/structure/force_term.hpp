@@ -31,6 +31,11 @@ class ForceTerm {
     throw InputError("'{}' has no tangent stiffness: use the explicit integrator for this scene", name());
   }
 
+  /// The share of the motion from `now` to the positions `to`, above 0 and up to 1, that may be made so that
+  /// nothing passes through anything. Adaptive explicit steps are repeated with that share of their time,
+  /// Newton's increments are cut to it.
+  virtual double allowed_motion(const Configuration& /*now*/, const Points& /*to*/) const { return 1; }
+
   /// True where that bound changes from one step to the next, as when contact forms: it is then taken anew in
   /// every step, not only when all bounds are.
   virtual bool stiffness_is_abrupt() const { return false; }

@@ -79,12 +79,41 @@ void Integrator::advance() {
     energies_.stored_at_start = energies_.stored;
     energies_.kinetic_at_start = kinetic_energy();
   }
-  move_nodes();
-  turn_nodes();
+  move();
   energies_.kinetic = kinetic_energy();
   system_.state.time_s += dt_;
   last_dt_ = dt_;
   ++steps_;
+}
+
+void Integrator::move() {
+  if (!settings_.adaptive) {
+    move_nodes();
+    turn_nodes();
+    return;
+  }
+  const Configuration before = system_.state;
+  const Energies energies = energies_;
+  std::vector<RigidBody> rigid;
+  for (const auto& body : rigid_) rigid.push_back(*body);
+  constexpr int most = 50;
+  for (int repeats = 0;; ++repeats) {
+    move_nodes();
+    turn_nodes();
+    double share = 1;
+    for (const auto& term : terms_) share = std::min(share, term->allowed_motion(before, system_.state.x));
+    if (share >= 1) return;
+    if (!(share > 0) || repeats == most)
+      throw NumericalFailure(
+          "structure: no step is small enough to keep bodies apart at {:.6g} s (share {:.3g} of {:.3g} s); "
+          "the "
+          "load or the speed is too large for the stiffness of the contact",
+          before.time_s, share, dt_);
+    dt_ *= 0.95 * share;  // the kick changes with the step, and with it the velocities
+    system_.state = before;
+    energies_ = energies;
+    for (std::size_t b = 0; b < rigid_.size(); ++b) *rigid_[b] = rigid[b];
+  }
 }
 
 void Integrator::evaluate_forces() {
@@ -138,7 +167,6 @@ void Integrator::choose_step(double largest_s) {
     }
   dt_ = settings_.step_s;
   if (most > 0) dt_ = std::min(dt_, 2 * settings_.safety / std::sqrt(most));
-  if (last_dt_ > 0) dt_ = std::min(dt_, growth * last_dt_);
   if (first_dt_ == 0) first_dt_ = dt_;
   if (!(dt_ > collapse * first_dt_))
     throw NumericalFailure(
@@ -146,6 +174,7 @@ void Integrator::choose_step(double largest_s) {
         "load "
         "or too fast an impact for its stiffness",
         first_dt_, dt_, system_.state.time_s, where);
+  if (last_dt_ > 0) dt_ = std::min(dt_, growth * last_dt_);
   dt_ = std::min(dt_, largest_s);
 }
 

@@ -9,7 +9,8 @@
 //
 // Adaptive: the step follows the stable one, safety x 2/sqrt(max k_i/m_i), anew in every step (terms that are
 // not abrupt: every `scaling_interval` steps), grows by at most a tenth a step and ends where the caller
-// asks; the kick takes the mean of the steps before and after it, half a step at the start.
+// asks; the kick takes the mean of the steps before and after it, half a step at the start. A step in which a
+// term allows only a share of the motion (ForceTerm::allowed_motion) is repeated with that share of the time.
 //
 // Rigid bodies (structure/rigid_body.hpp) take part; their nodes follow them.
 //
@@ -95,6 +96,7 @@ class Integrator {
   void bound_stiffness();
   void scale_masses();
   void choose_step(double largest_s);
+  void move();
   void move_nodes();
   void turn_nodes();
   double kick_s() const;
