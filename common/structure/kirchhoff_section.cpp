@@ -1,4 +1,4 @@
-#include "structure/subdivision_section.hpp"
+#include "structure/kirchhoff_section.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>

@@ -1,0 +1,147 @@
+// A Kirchhoff-Love shell of triangles whose only unknowns are positions: large rotations, any plane-stress
+// law, any manifold mesh.
+//
+//   E = sum over triangles A W(c, k),
+//   c  metric of the flat triangle,   k_ab = 1/A sum over its edges L nu_a nu_b (n . d),
+// n the triangle's normal, nu the outward normal of an edge of length L in the reference triangle, d the
+// edge's vector (kirchhoff_edges.hpp), turned outward. By Gauss' theorem k is the mean of n . x,ab when d is
+// the derivative of the position across the edge. W is the energy of the section (kirchhoff_section.hpp).
+//
+// This is Morley's triangle (1968; constant moments, the slope of an edge seen alike from both sides) with
+// the slopes not unknown but found from the nodes near by, so that they are exact for quadratic surfaces: a
+// bending patch test is passed on every mesh, and as the two slopes at an edge differ by its hinge angle
+// there is no motion without energy but rigid ones. Rotation-free triangles with other slopes: Phaal and
+// Calladine 1992; Onate and Zarate 2000; Flores and Onate 2005. Loop subdivision (Cirak and Ortiz 2001) was
+// measured first: order 3 on regular meshes, but no convergence on unstructured ones
+// (docs/verification/shells.md).
+//
+// Nodes are points of the surface. Forces reach the nodes of the neighbouring triangles and of theirs (12 on
+// regular meshes, 18 for a triangle with all three edge vectors on unstructured ones). Limits: no transverse
+// shear; the mesh finer than the radius of curvature; no creases inside the surface (an angle of the
+// reference shape stays, and bends elastically). Lengths mm, stress Pa, energy nJ, force uN.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "structure/force_term.hpp"
+#include "structure/kirchhoff_edges.hpp"
+#include "structure/kirchhoff_section.hpp"
+#include "structure/shell.hpp"
+
+namespace valsalva::structure {
+
+struct LayerStates {
+  ElementState bottom, middle, top;  ///< at zeta = -t/2, 0, t/2 along the normal
+};
+
+class KirchhoffShell {
+ public:
+  /// thickness per node, fibres and stiffness factor per triangle. InputError as Shell and ShellEdges.
+  KirchhoffShell(ShellMesh mesh, std::shared_ptr<const SectionModel> section,
+                 const EdgeConditions& conditions = {});
+
+  int nodes() const { return edges_.nodes(); }
+  int elements() const { return static_cast<int>(elements_.size()); }
+  const ShellMesh& mesh() const { return mesh_; }
+  const ShellEdges& edges() const { return edges_; }
+  double reference_area(int element) const { return elements_[element].area; }
+  double thickness(int element) const { return elements_[element].section.thickness; }
+  /// Lumped: a third of every adjacent triangle's mass, or area.
+  std::vector<double> lumped_mass(double density_g_per_mm3) const;
+  std::vector<double> lumped_area() const;
+
+  /// f[offset + a] += force on node a of the body, whose position is x[offset + a]; returns the energy.
+  /// Independent of the number of threads. A share of the work gives a share of force and energy. clamps:
+  /// rotations of the clamps since the reference, by EdgeCondition::clamp; those not given have not turned.
+  double add_forces(const Points& x, Points& f, int offset = 0, Part part = {},
+                    std::span<const Mat3> clamps = {}) const;
+  /// The consistent tangent.
+  void add_tangent(const Points& x, BlockMatrix& out, int offset = 0,
+                   std::span<const Mat3> clamps = {}) const;
+  /// Absolute row sums of the positive semi-definite tangent (KirchhoffTangent).
+  void add_stiffness_bound(const Points& x, std::vector<double>& bound, int offset = 0) const;
+  /// out += K direction with that tangent.
+  void add_tangent_product(const Points& x, const Points& direction, Points& out) const;
+
+  /// In the middle surface.
+  ElementState element_state(const Points& x, int element, int offset = 0) const;
+  LayerStates layer_states(const Points& x, int element, int offset = 0) const;
+  /// Curvature k - k0 of an element in its own basis (first edge, and across).
+  Eigen::Matrix2d bending_strain(const Points& x, int element, int offset = 0) const;
+  /// The largest exponent Q over all elements and layers; the laws' exponential is continued beyond Q = 6.
+  double max_exponent(const Points& x, int offset = 0) const;
+
+ private:
+  friend class KirchhoffTangent;
+  using Jet = Eigen::Matrix<double, 3, 5>;  // x,1 x,2 x,11 x,22 x,12
+  using Hessian = Eigen::Matrix<double, 15, 15>;
+  using ElementMatrix = Eigen::Matrix<double, 18, 18>;
+  struct Element {
+    std::array<int, 6> vertices;  // nodes, then edge vectors
+    double area;
+    Eigen::Matrix<double, 2, 3> gradients;  // of the nodes' shape functions, in the reference triangle
+    Eigen::Matrix3d bends;                  // x,11 x,22 x,12 (rows) by the edge vectors
+    SectionPoint section;
+  };
+  void build_elements();
+  void build_section(int element, const Vec3& e1, const Vec3& e2);
+  Jet jet(const Points& vertices, const Element& e) const;
+  SectionResponse respond(const Element& e, const Jet& j, bool tangent) const;
+  double element_forces(const Points& vertices, const Element& e, Vec3* force) const;
+  Hessian hessian(const Element& e, const Jet& j, bool positive) const;
+  ElementMatrix element_tangent(const Points& vertices, const Element& e, bool positive) const;
+  ElementState layer_state(const Element& e, const Jet& j, double height) const;
+  Jet jet_of(const Points& x, int element, int offset) const;
+
+  ShellMesh mesh_;
+  std::shared_ptr<const SectionModel> section_;
+  ShellEdges edges_;
+  std::vector<Element> elements_;
+};
+
+/// The tangent made positive semi-definite, in two phases, for power iteration: update once, apply many
+/// times. The membrane stress's negative eigenvalue is cut off, the moments' geometric part left out.
+class KirchhoffTangent {
+ public:
+  explicit KirchhoffTangent(const KirchhoffShell& shell, Part part = {});
+  void update(const Points& x, int offset = 0);
+  /// out[offset + a] += (K direction)[a]
+  void apply(const Points& direction, Points& out, int offset = 0) const;
+  /// Absolute row sums: per node, the largest of its three rows; an upper bound.
+  void add_row_sums(std::vector<double>& bound, int offset = 0) const;
+
+ private:
+  const KirchhoffShell& shell_;
+  int begin_, end_;
+  std::vector<KirchhoffShell::ElementMatrix> element_;
+};
+
+/// A shell body as one force term of a System.
+class KirchhoffTerm : public ForceTerm {
+ public:
+  KirchhoffTerm(std::shared_ptr<const KirchhoffShell> shell, const Body& body)
+      : shell_(std::move(shell)), body_(body) {}
+  std::string name() const override { return body_.name; }
+  double add_forces(const Configuration& now, Forces& out) const override {
+    return shell_->add_forces(now.x, out.force, body_.offset, {}, clamps_(now.time_s));
+  }
+  void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const override {
+    shell_->add_stiffness_bound(now.x, out.translation, body_.offset);
+  }
+  void add_tangent(const Configuration& now, BlockMatrix& out) const override {
+    shell_->add_tangent(now.x, out, body_.offset, clamps_(now.time_s));
+  }
+  const KirchhoffShell& shell() const { return *shell_; }
+  /// How the clamps have turned since the reference, at a time.
+  void set_clamps(std::function<std::vector<Mat3>(double time_s)> clamps) { clamps_ = std::move(clamps); }
+
+ private:
+  std::shared_ptr<const KirchhoffShell> shell_;
+  Body body_;
+  std::function<std::vector<Mat3>(double)> clamps_ = [](double) { return std::vector<Mat3>(); };
+};
+
+}  // namespace valsalva::structure
