@@ -31,7 +31,7 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
     : slab_(comm, grid, checked(boundaries).periodic(2)),
       boundaries_(boundaries),
       parameters_(parameters),
-      solids_(slab_, parameters.density),
+      solids_(slab_, parameters.density, parameters.wall),
       momentum_(slab_, boundaries_, parameters.convection,
                 parameters.implicit_viscosity ? 0 : parameters.viscosity / parameters.density,
                 parameters.order),
@@ -157,7 +157,7 @@ void Flow::advance(Advance step, const PredictOptions& options) {
     solids_.prepare();
     const double eta = parameters_.penalisation_s;
     implicit_viscosity_->solve(step.dt, options.penalise ? step.dt / eta : 0, velocity_, solids_, next_);
-    if (options.penalise) solids_.record(eta, next_);
+    if (options.penalise) solids_.record(eta, velocity_, next_);
     velocity_.swap(next_);
     return;
   }
@@ -207,6 +207,7 @@ void Flow::add_impulse(const FaceField& force, double dt) {
 }
 
 void Flow::penalise(double dt) {
+  if (solids_.interpolated()) fill_ghosts();
   solids_.penalise(dt, parameters_.penalisation_s, velocity_);
 }
 
@@ -231,6 +232,7 @@ void Flow::fill_source(int k, double per_dt, double* plane) {
     for (int i = 0; i < nx; ++i)
       b[i] = factor * ((u[i + 1] - u[i]) + (v[i + sy] - v[i]) + (w[i + sz] - w[i]));
   }
+  for (const int cell : solids_.dead_cells(k)) plane[cell] = 0;
 }
 
 StepReport Flow::project(double dt) {

@@ -9,8 +9,9 @@
 //   S)
 //                                 (viscosity.hpp)
 //
-// Second order in space and in time for the velocity (first order at penalised walls). Explicit: stable for
-// dt (|u|+|v|+|w|)/h below about 0.5 to 1 and dt < h^2 / (12 nu). What open ends prescribe: boundary.hpp.
+// Second order in space and in time for the velocity (first order at staircase walls and bodies). Explicit:
+// stable for dt (|u|+|v|+|w|)/h below about 0.5 to 1 and dt < h^2 / (12 nu). What open ends prescribe:
+// boundary.hpp.
 //
 // step_rk3 instead: three stages of Wray's scheme (Spalart, Moser, Rogers 1991, J. Comput. Phys. 96,
 // appendix), each an incremental projection, with alpha = 8/15, 2/15, 1/3 of the step and
@@ -53,6 +54,7 @@ struct FlowParameters {
   double viscosity = 3.5e-3;  ///< Pa s
   Convection convection = Convection::upwind3;
   double penalisation_s = 1e-8;     ///< eta, the time constant of solid faces
+  Wall wall = Wall::staircase;      ///< how the lumen's wall cuts the grid (solids.hpp)
   int order = 2;                    ///< in space; 4 only in boxes periodic in all directions
   bool implicit_viscosity = false;  ///< of the constant part (implicit_viscosity.hpp)
   ExtraViscosityParameters extra_viscosity;
@@ -146,6 +148,12 @@ class Flow {
   Vec3 velocity_at(const Vec3& x) const;  ///< trilinear, mm/s; the same on all ranks
   double pressure_at(const Vec3& x);      ///< trilinear, Pa
 
+  /// Traction of the fluid along a wall through x, Pa: tangential part of mu times the slope at the wall of
+  /// the parabola through the velocities at a, 2a and 3a = 4.5 h along the normal (towards the fluid). The
+  /// wall's own velocity does not enter: the error of the interpolated wall is, next to it, a constant of
+  /// second order. The constant viscosity counts.
+  Vec3 wall_shear_stress(const Vec3& x, const Vec3& normal) const;
+
   /// Everything the continuation needs, below "fluid/", complete on rank 0 and empty elsewhere; the same for
   /// any number of ranks. Body masks and inflow shapes are the caller's, who sets them before load().
   std::map<std::string, state::Array> save() const;
@@ -165,6 +173,7 @@ class Flow {
   StepReport report_of(double dt, double energy, double speed) const;
   [[noreturn]] void report_not_finite() const;
   double sample(const Field& field, int d, const Vec3& x) const;
+  double sample_quadratic(int d, const Vec3& x) const;
 
   Slab slab_;
   Boundaries boundaries_;

@@ -100,11 +100,17 @@ double Flow::divergence() const {
     return mpi::max(slab_.comm, largest);
   }
   for (int k = 0; k < slab_.planes; ++k) {
+    auto dead = solids_.dead_cells(k).begin();
+    const auto last_dead = solids_.dead_cells(k).end();
     for (int j = 0; j < grid.cells[1]; ++j) {
       const double* u = velocity_[0].row(j, k);
       const double* v = velocity_[1].row(j, k);
       const double* w = velocity_[2].row(j, k);
       for (int i = 0; i < grid.cells[0]; ++i) {
+        if (dead != last_dead && *dead == j * grid.cells[0] + i) {
+          ++dead;
+          continue;
+        }
         const double sum =
             (u[i + 1] - u[i]) + (v[i + slab_.stride_y] - v[i]) + (w[i + slab_.stride_z] - w[i]);
         largest = std::max(largest, std::abs(sum));
@@ -170,6 +176,45 @@ Vec3 Flow::velocity_at(const Vec3& x) const {
 double Flow::pressure_at(const Vec3& x) {
   fill_pressure_ghosts(slab_, boundaries_, pressure_, end_pressure_);
   return sample(pressure_, 3, x);
+}
+
+// Quadratic in each direction, about the nearest face: its error is of third order, so that differences over
+// h converge. The rank that holds the point answers.
+double Flow::sample_quadratic(int d, const Vec3& x) const {
+  const Grid& grid = slab_.grid;
+  const int plane =
+      std::clamp(static_cast<int>(std::floor((x[2] - grid.origin[2]) / grid.h)), 0, grid.cells[2] - 1);
+  double value = 0;
+  if (plane >= slab_.first && plane < slab_.first + slab_.planes) {
+    const Vec3 s = (x - grid.position(d, 0, 0, slab_.first)) / grid.h;
+    std::array<int, 3> at;
+    std::array<std::array<double, 3>, 3> weight;
+    for (int e = 0; e < 3; ++e) {
+      at[e] = std::clamp(static_cast<int>(std::lround(s[e])), 0, e == 2 ? slab_.planes : grid.cells[e]);
+      const double t = s[e] - at[e];
+      weight[e] = {0.5 * t * (t - 1), 1 - t * t, 0.5 * t * (t + 1)};
+    }
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i)
+          value += weight[0][i] * weight[1][j] * weight[2][k] *
+                   velocity_[d](at[0] + i - 1, at[1] + j - 1, at[2] + k - 1);
+      }
+    }
+  }
+  return mpi::sum(slab_.comm, value);
+}
+
+Vec3 Flow::wall_shear_stress(const Vec3& x, const Vec3& normal) const {
+  const double a = 1.5 * grid().h;
+  const Vec3 n = normal.normalized();
+  Vec3 slope;
+  for (int d = 0; d < 3; ++d) {
+    slope[d] = (-2.5 * sample_quadratic(d, x + a * n) + 4 * sample_quadratic(d, x + 2 * a * n) -
+                1.5 * sample_quadratic(d, x + 3 * a * n)) /
+               a;
+  }
+  return parameters_.viscosity * (slope - slope.dot(n) * n);
 }
 
 }  // namespace valsalva::fluid

@@ -131,7 +131,7 @@ void ImplicitViscosity::solve(double dt, double ratio, const FaceField& velocity
       }
     });
     if (ratio > 0) {
-      solids.each_face(d, [&](std::ptrdiff_t at, double target) {
+      solids.each_face(d, velocity, [&](std::ptrdiff_t at, double target) {
         mass_.data()[at] += ratio;
         residual_.data()[at] -= ratio * (u.data()[at] - target);
       });

@@ -28,8 +28,15 @@ double squared_distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b,
 
 }  // namespace
 
-Solids::Solids(const Slab& slab, double density) : slab_(slab), density_(density) {
+Wall wall_from(const std::string& name) {
+  if (name == "staircase") return Wall::staircase;
+  if (name == "interpolated") return Wall::interpolated;
+  throw InputError("wall '{}'; expected staircase or interpolated", name);
+}
+
+Solids::Solids(const Slab& slab, double density, Wall form) : slab_(slab), density_(density), form_(form) {
   names_ = {"wall"};
+  dead_cells_.resize(slab.planes);
   motion_.resize(1);
   force_.assign(1, Vec3::Zero());
   const std::size_t cells = slab.grid.plane_cells() * slab.planes;
@@ -74,6 +81,100 @@ void Solids::set_lumen(const Distance& distance) {
   const Vec3 margin = Vec3::Constant(slab_.grid.h);
   mark(wall, slab_.grid.low() - margin, slab_.grid.high() + margin,
        [&](const Vec3& x) { return !(distance(x) < 0); });
+  if (form_ != Wall::interpolated) return;
+  find_ghosts(distance);
+  find_dead_cells(distance);
+}
+
+void Solids::find_ghosts(const Distance& distance) {
+  const Grid& grid = slab_.grid;
+  const double h = grid.h;
+  const Field shape(slab_);
+  const auto gradient = [&](const Vec3& x) {
+    Vec3 g;
+    for (int e = 0; e < 3; ++e) {
+      const Vec3 step = 0.5 * h * Vec3::Unit(e);
+      g[e] = (distance(x + step) - distance(x - step)) / h;
+    }
+    return g;
+  };
+  still_ghosts_ = 0;
+  for (int d = 0; d < 3; ++d) {
+    ghosts_[d].clear();
+    const auto inside = [&](int i, int j, int k) { return distance(grid.position(d, i, j, k)) < 0; };
+    const auto interpolate = [&](Ghost& ghost, const Vec3& x) {
+      const Vec3 g = gradient(x);
+      const double size = g.norm();
+      if (!(size > 0.1)) return false;
+      const double s = std::max(0.0, distance(x) / size);
+      for (double delta = h; delta < 2.4 * h; delta += 0.25 * h) {
+        const Vec3 at = (x - (s + delta) / size * g - grid.position(d, 0, 0, slab_.first)) / h;
+        std::array<int, 3> corner;
+        bool valid = true;
+        for (int e = 0; e < 3; ++e) {
+          corner[e] = static_cast<int>(std::floor(at[e]));
+          const int last = e == 2 ? slab_.planes + ghosts - 1 : grid.cells[e];
+          valid = valid && corner[e] >= (e == 2 ? -ghosts : -1) && corner[e] < last;
+        }
+        for (int c = 0; c < 8 && valid; ++c) {
+          double weight = -s / delta;
+          std::array<int, 3> of = corner;
+          for (int e = 0; e < 3; ++e) {
+            const int up = c >> e & 1;
+            weight *= up ? at[e] - corner[e] : 1 - (at[e] - corner[e]);
+            of[e] += up;
+          }
+          ghost.weight[c] = weight;
+          valid = inside(of[0], of[1], of[2] + slab_.first);
+        }
+        if (!valid) continue;
+        ghost.corner = shape.index(corner[0], corner[1], corner[2]);
+        return true;
+      }
+      return false;
+    };
+    const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
+    for (int k = 0; k < planes; ++k) {
+      const int z = k + slab_.first;
+      for (int j = 0; j < grid.cells[1]; ++j) {
+        for (int i = 0; i < grid.cells[0]; ++i) {
+          if (owner(d, i, j, k) != 1 + wall) continue;
+          if (!(inside(i - 1, j, z) || inside(i + 1, j, z) || inside(i, j - 1, z) || inside(i, j + 1, z) ||
+                inside(i, j, z - 1) || inside(i, j, z + 1)))
+            continue;
+          Ghost ghost{shape.index(i, j, k), 0, {}};
+          if (interpolate(ghost, grid.position(d, i, j, z))) {
+            ghosts_[d].push_back(ghost);
+          } else {
+            ++still_ghosts_;
+          }
+        }
+      }
+    }
+  }
+}
+
+void Solids::find_dead_cells(const Distance& distance) {
+  const Grid& grid = slab_.grid;
+  for (int k = 0; k < slab_.planes; ++k) {
+    dead_cells_[k].clear();
+    for (int j = 0; j < grid.cells[1]; ++j) {
+      for (int i = 0; i < grid.cells[0]; ++i) {
+        bool dead = true;
+        for (int d = 0; d < 3 && dead; ++d) {
+          for (int up = 0; up < 2 && dead; ++up) {
+            const int z = k + slab_.first;
+            dead = !(distance(grid.position(d, i + (d == 0) * up, j + (d == 1) * up, z + (d == 2) * up)) < 0);
+          }
+        }
+        if (dead) dead_cells_[k].push_back(j * grid.cells[0] + i);
+      }
+    }
+  }
+}
+
+long Solids::ghost_faces() const {
+  return static_cast<long>(ghosts_[0].size() + ghosts_[1].size() + ghosts_[2].size());
 }
 
 void Solids::set_lumen(const geometry::GridSdf& distance) {
@@ -142,15 +243,20 @@ void Solids::list_faces() {
     held_[d].clear();
     walls_[d].clear();
     const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
+    auto ghost = ghosts_[d].begin();  // in the order of their index
     for (int k = 0; k < planes; ++k) {
       for (int j = 0; j < grid.cells[1]; ++j) {
+        bool open = false;  // the last run ends here
         for (int i = 0; i < grid.cells[0]; ++i) {
           const std::uint8_t of = owner(d, i, j, k);
-          if (of == 1 + wall) {
-            const std::ptrdiff_t at = shape.index(i, j, k);
-            if (i == 0 || owner(d, i - 1, j, k) != of) walls_[d].push_back({at, 0});
+          const std::ptrdiff_t at = shape.index(i, j, k);
+          while (ghost != ghosts_[d].end() && ghost->index < at) ++ghost;
+          const bool still = of == 1 + wall && (ghost == ghosts_[d].end() || ghost->index != at);
+          if (still) {
+            if (!open) walls_[d].push_back({at, 0});
             ++walls_[d].back().count;
           }
+          open = still;
           if (of <= 1 + wall) continue;
           held_[d].push_back({shape.index(i, j, k), static_cast<std::uint8_t>(of - 1),
                               grid.position(d, i, j, k + slab_.first)});
@@ -169,6 +275,11 @@ void Solids::penalise(double dt, double eta, FaceField& velocity) {
   for (int d = 0; d < 3; ++d) {
     double* u = velocity[d].data().data();
     double lost = 0;
+    for (const Ghost& ghost : ghosts_[d]) {
+      const double after = keep * (u[ghost.index] + ratio * target(ghost, u));
+      lost += u[ghost.index] - after;
+      u[ghost.index] = after;
+    }
     for (const Run& run : walls_[d]) {
       double* at = u + run.first;
 #pragma omp simd reduction(+ : lost)
@@ -187,12 +298,13 @@ void Solids::penalise(double dt, double eta, FaceField& velocity) {
   }
 }
 
-void Solids::record(double eta, const FaceField& velocity) {
+void Solids::record(double eta, const FaceField& before, const FaceField& velocity) {
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   const double factor = density_ * std::pow(slab_.grid.h, 3) / eta;
   for (int d = 0; d < 3; ++d) {
     const double* u = velocity[d].data().data();
     double of_wall = 0;
+    for (const Ghost& ghost : ghosts_[d]) of_wall += u[ghost.index] - target(ghost, before[d].data().data());
     for (const Run& run : walls_[d]) {
       for (int i = 0; i < run.count; ++i) of_wall += u[run.first + i];
     }

@@ -6,7 +6,16 @@
 //
 //   u <- (u + dt/eta U) / (1 + dt/eta)
 //
-// First order at the wall. A face belongs to one body, the first that claims it; body 0 is the lumen's wall.
+// First order at the wall. With Wall::interpolated the first layer of solid faces beyond the lumen's wall
+// does not stand still but carries the flow on smoothly through the wall (ghost faces; Mittal et al. 2008, J.
+// Comput. Phys. 227): with s the distance of the face to the wall and n the direction inwards,
+//
+//   U = -(s / delta) u(x + (s + delta) n),   u linear between its faces,
+//
+// delta the first of 1, 1.25, ... 2.25 h whose eight faces all lie inside the lumen; U = 0 where there is
+// none (narrow gaps). Second order at the wall for the velocity; bodies stay sharp.
+//
+// A face belongs to one body, the first that claims it; body 0 is the lumen's wall.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,6 +32,11 @@ namespace valsalva::fluid {
 
 using Distance = std::function<double(const Vec3&)>;  ///< mm, negative inside the lumen (or inside a body)
 
+enum class Wall { staircase, interpolated };
+
+/// InputError for an unknown name.
+Wall wall_from(const std::string& name);
+
 struct RigidMotion {
   Vec3 velocity = Vec3::Zero();  ///< mm/s
   Vec3 rate = Vec3::Zero();      ///< rad/s, about `centre`
@@ -34,7 +48,7 @@ class Solids {
  public:
   static constexpr int wall = 0;
 
-  Solids(const Slab& slab, double density);
+  Solids(const Slab& slab, double density, Wall form = Wall::staircase);
 
   /// Faces (and cells) whose centre has distance >= 0 become wall, unless a body holds them.
   void set_lumen(const Distance& distance);
@@ -59,11 +73,22 @@ class Solids {
   /// Faces of this rank that belong to the body, all components.
   long faces(int body) const;
 
-  /// Penalises all owned faces with ratio = dt/eta, and keeps the momentum taken from the fluid for force_on.
+  /// (Interpolated wall: the ghosts of `velocity` must be valid.) Penalises all owned faces with ratio =
+  /// dt/eta, and keeps the momentum taken from the fluid for force_on.
   void penalise(double dt, double eta, FaceField& velocity);
+  /// Ghost faces of the interpolated wall on this rank, and those of them that found no place to interpolate
+  /// at.
+  long ghost_faces() const;
+  long still_ghost_faces() const { return still_ghosts_; }
+  /// Places (j nx + i) of the dead cells in the local plane k; none with the staircase.
+  const std::vector<int>& dead_cells(int k) const { return dead_cells_[k]; }
+  bool interpolated() const { return form_ == Wall::interpolated; }
+
   /// each(index in a Field, velocity of the body there) for the held faces of component d, in fixed order.
+  /// Ghost faces take theirs from `velocity`, whose ghosts must be valid.
   template <class Each>
-  void each_face(int d, const Each& each) const {
+  void each_face(int d, const FaceField& velocity, const Each& each) const {
+    for (const Ghost& ghost : ghosts_[d]) each(ghost.index, target(ghost, velocity[d].data().data()));
     for (const Run& run : walls_[d]) {
       for (int i = 0; i < run.count; ++i) each(run.first + i, 0.0);
     }
@@ -74,7 +99,8 @@ class Solids {
     if (!listed_) list_faces();
   }
   /// In place of penalise, for a velocity that was penalised with eta elsewhere.
-  void record(double eta, const FaceField& velocity);
+  /// before: what each_face was given.
+  void record(double eta, const FaceField& before, const FaceField& velocity);
   /// Force of the fluid on the body over the last penalised step, micronewton (collective).
   Vec3 force_on(int body) const;
 
@@ -88,6 +114,19 @@ class Solids {
     std::ptrdiff_t first;
     int count;
   };
+  struct Ghost {  // a face of the first layer beyond the wall, and where it interpolates
+    std::ptrdiff_t index, corner;
+    std::array<double, 8> weight;  ///< of the faces from `corner` on, x fastest; -s / delta included
+  };
+  double target(const Ghost& ghost, const double* u) const {
+    double sum = 0;
+    for (int c = 0; c < 8; ++c)
+      sum += ghost.weight[c] *
+             u[ghost.corner + (c & 1) + (c >> 1 & 1) * slab_.stride_y + (c >> 2) * slab_.stride_z];
+    return sum;
+  }
+  void find_ghosts(const Distance& distance);
+  void find_dead_cells(const Distance& distance);
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * slab_.grid.cells[1] + j) * slab_.grid.cells[0] + i;
   }
@@ -98,13 +137,17 @@ class Solids {
 
   const Slab& slab_;
   double density_;
+  Wall form_;
   bool listed_ = true;
+  long still_ghosts_ = 0;
   std::vector<std::string> names_;
   std::vector<RigidMotion> motion_;
   std::vector<Vec3> force_;  ///< of this rank
   std::array<std::vector<std::uint8_t>, 4> owner_;
-  std::array<std::vector<Run>, 3> walls_;
-  std::array<std::vector<Held>, 3> held_;  ///< faces of bodies other than the wall
+  std::array<std::vector<Run>, 3> walls_;  ///< without ghost faces
+  std::array<std::vector<Ghost>, 3> ghosts_;
+  std::vector<std::vector<int>> dead_cells_;  ///< of each local plane
+  std::array<std::vector<Held>, 3> held_;     ///< faces of bodies other than the wall
 };
 
 }  // namespace valsalva::fluid

@@ -28,6 +28,8 @@ void declare_fluid(Schema& schema) {
   schema.real(
       "fluid.penalisation_s", 1e-8, {1e-12, 1e-5},
       "Time constant of solid faces; a solid lets velocity penalisation/density x pressure gradient through");
+  schema.choice("fluid.wall", "staircase", {"staircase", "interpolated"},
+                "How the lumen's wall cuts the grid: whole faces, or second-order by interpolation");
   schema.real("fluid.margin_cells", 2, {1, 50}, "Cells between the lumen and the sides of the box");
 }
 
