@@ -24,22 +24,19 @@ state::Mesh mesh_of(const assembly::BuiltBody& body, const Points& x) {
   return mesh;
 }
 
-Points part(const Points& all, const structure::Body& at) {
-  return {all.begin() + at.begin(), all.begin() + at.end()};
-}
-
 }  // namespace
 
-void add_bodies(state::State& out, const assembly::Scene& scene, const Points& reference) {
+void add_bodies(state::State& out, const assembly::Scene& scene) {
   const structure::Configuration& now = scene.system->state;
   for (const assembly::BuiltBody& body : scene.bodies) {
-    const Points x = part(now.x, body.at), rest = part(reference, body.at);
+    const Points x = body.places(now), &rest = body.mesh.points;
     Points displacement(x.size());
     for (std::size_t a = 0; a < x.size(); ++a) displacement[a] = x[a] - rest[a];
     state::Mesh mesh = mesh_of(body, x);
     mesh.point_data["reference"] = Array::of(rest);
     mesh.point_data["displacement"] = Array::of(displacement);
-    mesh.point_data["velocity"] = Array::of(part(now.v, body.at));
+    mesh.point_data["velocity"] =
+        Array::of(Points(now.v.begin() + body.at.begin(), now.v.begin() + body.at.end()));
     assembly::ElementField field = assembly::element_field(body, now);
     if (!field.stretch.empty()) mesh.cell_data["stretch"] = Array::of(field.stretch);
     for (double& stress : field.von_mises_Pa) stress /= units::pa_per_kPa;

@@ -8,7 +8,7 @@ namespace valsalva::cycle {
 
 /// Meshes at their present positions: point data reference, displacement, velocity (3); cell data stretch,
 /// von_mises_kPa where the element has them.
-void add_bodies(state::State& out, const assembly::Scene& scene, const Points& reference);
+void add_bodies(state::State& out, const assembly::Scene& scene);
 
 void add_snapshot(state::State& out, const structure::Snapshot& snapshot);
 structure::Snapshot snapshot_of(const state::State& state);

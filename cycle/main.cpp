@@ -19,6 +19,7 @@
 #include "results.hpp"
 #include "scene/scene.hpp"
 #include "state/checkpoint.hpp"
+#include "structure/threads.hpp"
 
 namespace {
 
@@ -113,6 +114,7 @@ void check(const Case& scene) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  valsalva::structure::wait_passively(argv);
   return valsalva::stage_main(argc, argv,
                               {"cycle",
                                "The valve beats: blood, leaflets, heart and arteries",

@@ -17,9 +17,10 @@ namespace {
 
 class Builder {
  public:
-  Builder(const Case& scene, const Case& body)
+  Builder(const Case& scene, const Case& body, const Points* reference)
       : scene_(scene),
         in_(body),
+        reference_(reference),
         what_(fmt::format("{}: [[body]] '{}'", scene.file().string(), text("name"))) {}
 
   BuiltBody build() {
@@ -36,6 +37,11 @@ class Builder {
     b.spin = vector("spin_rad_per_s");
     try {
       b.mesh = mesh(b.kind);
+      b.imaged = b.mesh.points;
+      if (reference_) {
+        VALSALVA_ASSERT(reference_->size() == b.mesh.points.size());
+        b.mesh.points = *reference_;
+      }
       b.half_thickness.assign(b.mesh.points.size(), 0);
       if (b.kind == Kind::shell) make_shell(b);
       if (b.kind == Kind::solid) make_solid(b);
@@ -228,11 +234,18 @@ class Builder {
     mesh.fibre2 = fibres.second;
     mesh.stiffness_factor.assign(mesh.triangles.size(), real("stiffness_factor"));
     const auto law = material.plane_law();
-    const RestModuli rest = moduli_at_rest(*law);
+    const RestModuli rest = moduli_at_rest(*law, !mesh.fibre1.empty());
     for (std::size_t a = 0; a < mesh.thickness_mm.size(); ++a)
       b.half_thickness[a] = 0.5 * mesh.thickness_mm[a];
     b.bending_Pa = real("bending_scale") * rest.young_Pa;
     b.bending_poisson = rest.poisson;
+    if (text("shell_element") == "kirchhoff") {
+      const structure::SectionScales scales{real("membrane_scale"), std::cbrt(real("bending_scale"))};
+      b.section = text("law") == "linear" ? structure::koiter_section(rest.young_Pa, rest.poisson, scales)
+                                          : structure::law_section(law, 3, scales);
+      b.shell_mesh = std::move(mesh);
+      return;
+    }
     b.shell = std::make_shared<structure::Shell>(std::move(mesh), scaled(law, real("membrane_scale")),
                                                  structure::Bending{b.bending_Pa, b.bending_poisson});
   }
@@ -319,6 +332,7 @@ class Builder {
 
   const Case& scene_;
   const Case& in_;
+  const Points* reference_;
   std::string what_;
 };
 
@@ -344,8 +358,14 @@ void add_triangles(const structure::SolidFace& face, std::vector<Triangle>& out)
 
 }  // namespace
 
-BuiltBody build_body(const Case& scene, const Case& body) {
-  return Builder(scene, body).build();
+BuiltBody build_body(const Case& scene, const Case& body, const Points* reference) {
+  return Builder(scene, body, reference).build();
+}
+
+void complete_shell(BuiltBody& body, const structure::EdgeConditions& edges) {
+  if (body.shell_mesh)
+    body.kirchhoff =
+        std::make_shared<structure::KirchhoffShell>(*std::move(body.shell_mesh), body.section, edges);
 }
 
 std::vector<Triangle> BuiltBody::surface() const {
@@ -380,7 +400,7 @@ std::vector<double> BuiltBody::surface_area() const {
 std::vector<double> BuiltBody::mass() const {
   switch (kind) {
     case Kind::shell:
-      return shell->lumped_mass(density);
+      return kirchhoff ? kirchhoff->lumped_mass(density) : shell->lumped_mass(density);
     case Kind::solid:
       return solid->lumped_mass(density);
     case Kind::beams:
@@ -420,6 +440,11 @@ std::shared_ptr<structure::ForceTerm> add_to_system(BuiltBody& b, structure::Sys
     if (const int r = system.rotation_of(a); r >= 0) system.state.angular_velocity[r] = b.spin;
   }
   if (b.shell) return std::make_shared<structure::ShellTerm>(b.shell, b.at);
+  if (b.kirchhoff) {
+    auto term = std::make_shared<structure::KirchhoffTerm>(b.kirchhoff, b.at);
+    if (b.clamps) term->set_clamps(b.clamps);
+    return term;
+  }
   if (b.beams) return std::make_shared<structure::BeamTerm>(b.beams, b.at);
   if (b.solid) return std::make_shared<structure::SolidTerm>(b.solid, b.at);
   return nullptr;

@@ -9,6 +9,7 @@
 #include "assembly/mesh.hpp"
 #include "core/case.hpp"
 #include "structure/beam.hpp"
+#include "structure/kirchhoff_shell.hpp"
 #include "structure/rigid_body.hpp"
 #include "structure/shell.hpp"
 #include "structure/solid.hpp"
@@ -21,8 +22,13 @@ enum class Kind { shell, solid, beams, rigid };
 struct BuiltBody {
   std::string name;
   Kind kind = Kind::shell;
-  BodyMesh mesh;
-  std::shared_ptr<const structure::Shell> shell;
+  BodyMesh mesh;                                  ///< its points: the stress-free shape
+  Points imaged;                                  ///< the places that the mesh gave
+  std::shared_ptr<const structure::Shell> shell;  ///< of hinges
+  std::shared_ptr<const structure::KirchhoffShell> kirchhoff;
+  std::optional<structure::ShellMesh> shell_mesh;  ///< from which the Kirchhoff shell will be made
+  std::shared_ptr<const structure::SectionModel> section;
+  std::function<std::vector<Mat3>(double)> clamps;  ///< how the clamps of a Kirchhoff shell have turned
   std::shared_ptr<const structure::BeamNetwork> beams;
   std::shared_ptr<const structure::Solid> solid;
   double density = 0;
@@ -40,12 +46,18 @@ struct BuiltBody {
   std::vector<double> mass() const;
   /// Border edges of a sheet, the lines of beams; none of a solid. Nodes of the mesh.
   std::vector<Edge> border() const;
-  /// A force on the place of a node of the system, which is in this body.
-  void add_point_force(int node, const Vec3& force, Points& out) const { out[node] += force; }
+  /// Where its nodes are.
+  Points places(const structure::Configuration& now) const {
+    return {now.x.begin() + at.begin(), now.x.begin() + at.end()};
+  }
 };
 
-/// InputError that names the case file and the entry.
-BuiltBody build_body(const Case& scene, const Case& body);
+/// InputError that names the case file and the entry. reference: another stress-free shape than that of the
+/// mesh (places of its nodes).
+BuiltBody build_body(const Case& scene, const Case& body, const Points* reference = nullptr);
+
+/// A Kirchhoff shell needs to know its supported edges; others are complete already.
+void complete_shell(BuiltBody& body, const structure::EdgeConditions& edges);
 
 /// Adds the body's nodes to the system (a rigid body's are held) and returns its elasticity, none for a rigid
 /// body. Sets `at`, `rigid` and the velocities.

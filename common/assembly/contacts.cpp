@@ -96,9 +96,6 @@ class Contacts {
   }
 
   void add_body_contact(const BuiltBody& one, const BuiltBody& other) {
-    if (e_.real("friction") > 0)
-      e_.fail(fmt::format("friction is {}; expected 0: bodies rub against rigid surfaces only",
-                          e_.real("friction")));
     contact::CollisionMesh mesh(s_.system->state.x);
     add_collision_body(mesh, one);
     const bool self = one.name == other.name;
@@ -113,9 +110,13 @@ class Contacts {
       candidates.set_pair(one.name, one.name, {false});
       candidates.set_pair(other.name, other.name, {false});
     }
-    candidates.set_pair(one.name, other.name, {true, e_.real("distance_mm")});
-    auto term = std::make_shared<contact::BodyContact>(
-        std::move(candidates), e_.text("law") == "penalty" ? contact::Law::penalty : contact::Law::barrier);
+    contact::BodyPairSettings pair;
+    pair.distance_mm = e_.real("distance_mm");
+    pair.friction = e_.real("friction");
+    candidates.set_pair(one.name, other.name, pair);
+    const auto law = e_.text("law") == "penalty" ? contact::Law::penalty : contact::Law::barrier;
+    auto term = std::make_shared<contact::BodyContact>(std::move(candidates), law, e_.real("slip_share"),
+                                                       e_.text("name"));
     s_.body_contacts.push_back(term);
     s_.add_term(e_.text("name"), std::move(term), e_.what());
   }

@@ -7,6 +7,7 @@
 #include "assembly/volume_load.hpp"
 #include "core/units.hpp"
 #include "structure/dead_load.hpp"
+#include "structure/kirchhoff_loads.hpp"
 #include "structure/pressure.hpp"
 #include "structure/solid_surface.hpp"
 
@@ -68,17 +69,60 @@ class Loads {
     return out;
   }
 
-  Term nodal_load(bool moment) const {
+  /// Border edges of the body with both nodes in the set, as the surface runs; nodes of the mesh.
+  static std::vector<Edge> border_within(const BuiltBody& body, const std::vector<int>& nodes) {
+    const std::set<int> chosen(nodes.begin(), nodes.end());
+    std::vector<Edge> edges = body.border();
+    std::erase_if(edges, [&](const Edge& e) {
+      return !chosen.contains(e[0] + body.at.offset) || !chosen.contains(e[1] + body.at.offset);
+    });
+    return edges;
+  }
+
+  static Edge ascending(const Edge& e) { return {std::min(e[0], e[1]), std::max(e[0], e[1])}; }
+
+  /// Moment along the edge of a Kirchhoff shell: each edge takes the part along itself.
+  void edge_moment(const BuiltBody& body, const std::vector<int>& nodes, const Vec3& full) {
+    const std::vector<Edge> edges = border_within(body, nodes);
+    const Points& x = body.mesh.points;
+    double length = 0;
+    for (const Edge& e : edges) length += (x[e[1]] - x[e[0]]).norm();
+    if (edges.empty()) e_.fail("moment: the set holds no border edge of the shell");
+    std::map<long, std::pair<double, std::vector<Edge>>> by_moment;
+    for (const Edge& e : edges) {
+      const double part = full.normalized().dot((x[e[1]] - x[e[0]]).normalized());
+      auto& [moment, list] = by_moment[std::lround(part * 1e9)];
+      moment = full.norm() * part / (e_.text("share") == "node" ? 1 : length);
+      list.push_back(ascending(e));
+    }
+    bool any = false;
+    for (auto& [key, group] : by_moment) {
+      if (std::abs(key) < 1) continue;
+      any = true;
+      std::sort(group.second.begin(), group.second.end());
+      keep(std::make_shared<structure::EdgeMomentTerm>(
+          e_.text("name"), body.kirchhoff, body.at, group.second,
+          [m = group.first, factor = factor_](double t) { return m * factor(t); }));
+    }
+    if (!any) e_.fail("moment_N_mm is normal to all border edges of the set; expected a part along them");
+  }
+
+  Term nodal_load(bool moment) {
     const std::vector<int>& nodes = s_.set(e_.text("nodes"), e_.what());
     const Vec3 full = units::uN_per_N * e_.vector(moment ? "moment_N_mm" : "force_N");
     if (full.isZero()) e_.fail(moment ? "moment_N_mm is zero" : "force_N is zero; expected a force");
+    const BuiltBody& first = s_.body_of(nodes.front());
+    if (moment && first.kirchhoff) {
+      edge_moment(first, nodes, full);
+      return nullptr;
+    }
     const std::vector<double> share = shares(nodes);
     Points force, turning;
     (moment ? turning : force)
         .assign(moment ? s_.system->rotational_nodes() : s_.system->nodes(), Vec3::Zero());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (!moment) {
-        s_.body_of(nodes[i]).add_point_force(nodes[i], share[i] * full, force);
+        force[nodes[i]] += share[i] * full;
         continue;
       }
       const int r = s_.system->rotation_of(nodes[i]);

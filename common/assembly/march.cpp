@@ -82,7 +82,9 @@ class Explicit : public March {
     structure::IntegratorSettings in;
     in.mass_scaling = s.mass_scaling;
     in.adaptive = !s.mass_scaling;
-    in.step_s = s.step_s > 0 ? s.step_s : s.mass_scaling ? s.safety * stable_step_s(scene) : 1e-3 * s.end_s;
+    in.step_s = s.step_s > 0     ? s.step_s
+                : s.mass_scaling ? std::min(s.safety * stable_step_s(scene), 1e-3 * s.end_s)
+                                 : 1e-3 * s.end_s;
     in.step_s = s.mass_scaling ? dividing(s.end_s, in.step_s) : in.step_s;
     in.safety = s.safety;
     in.scaling_interval = 20;
@@ -94,15 +96,14 @@ class Explicit : public March {
   void step() override {
     structure::System& system = *scene_.system;
     const double before = system.state.time_s, left = s_.end_s - before;
-    const double dt = integrator_->prepare(std::min(left, reachable_s()));
-    const bool last = dt >= left * (1 - 1e-9);
-    const double next = last ? s_.end_s : before + dt;
-    drive_.set_velocities(system, next, dt);
-    integrator_->advance();
-    system.state.time_s = next;
-    shortest_ = std::min(shortest_, dt);
-    longest_ = std::max(longest_, dt);
-    row_ = last || rows_.due(before, next);
+    const double planned = integrator_->prepare(std::min(left, reachable_s()));
+    drive_.set_velocities(system, before + planned, planned);
+    integrator_->advance();  // contact may have cut the step
+    if (s_.end_s - system.state.time_s <= 1e-9 * planned) system.state.time_s = s_.end_s;
+    const double now = system.state.time_s;
+    shortest_ = std::min(shortest_, now - before);
+    longest_ = std::max(longest_, now - before);
+    row_ = finished() || rows_.due(before, now);
     ++steps_;
   }
   bool finished() const override { return scene_.system->state.time_s >= s_.end_s; }
@@ -489,9 +490,8 @@ double stable_step_s(const Scene& scene) {
   for (std::size_t r = 0; r < bound.rotation.size(); ++r)
     if (!scene.system->held(scene.system->node_of_rotation(static_cast<int>(r))))
       largest = std::max(largest, bound.rotation[r] / scene.system->inertia(static_cast<int>(r)));
-  if (!(largest > 0))
-    throw InputError("dynamics.step_s is 0 and nothing in the scene has a stiffness; expected a step");
-  return 2 / std::sqrt(largest);
+  for (const auto& body : scene.rigid) largest = std::max(largest, body->largest_ratio(bound));
+  return largest > 0 ? 2 / std::sqrt(largest) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace valsalva::assembly

@@ -44,7 +44,8 @@ class March {
 
 std::unique_ptr<March> make_march(const Case& scene, Scene& built);
 
-/// The largest explicit step that is stable at the scene's present state, before any safety.
+/// The largest explicit step that is stable at the scene's present state, before any safety; infinite where
+/// nothing has a stiffness.
 double stable_step_s(const Scene& scene);
 
 }  // namespace valsalva::assembly

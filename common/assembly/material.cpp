@@ -140,8 +140,10 @@ std::shared_ptr<const materials::PlaneLaw> scaled(std::shared_ptr<const material
   return std::make_shared<ScaledLaw>(std::move(law), factor);
 }
 
-RestModuli moduli_at_rest(const materials::PlaneLaw& law) {
-  const Eigen::Matrix3d d = law.plane_tangent(Eigen::Matrix2d::Identity(), {}, 1).tangent;
+RestModuli moduli_at_rest(const materials::PlaneLaw& law, bool fibres) {
+  materials::PlaneFibres along;
+  along.count = fibres ? 1 : 0;
+  const Eigen::Matrix3d d = law.plane_tangent(Eigen::Matrix2d::Identity(), along, 1).tangent;
   const double nu = d(0, 1) / d(0, 0);
   return {d(0, 0) * (1 - nu * nu), nu};
 }

@@ -23,12 +23,12 @@ std::shared_ptr<const materials::Superelastic> superelastic_of(const Case& body,
 std::shared_ptr<const materials::PlaneLaw> scaled(std::shared_ptr<const materials::PlaneLaw> law,
                                                   double factor);
 
-/// Young's modulus and Poisson number of a plane law at rest, without fibres (which bear nothing there):
-/// nu = D12/D11, E = D11 (1 - nu^2).
+/// Young's modulus and Poisson number of a plane law at rest: nu = D12/D11, E = D11 (1 - nu^2), direction 1
+/// along the first fibre family where there are fibres.
 struct RestModuli {
   double young_Pa, poisson;
 };
-RestModuli moduli_at_rest(const materials::PlaneLaw& law);
+RestModuli moduli_at_rest(const materials::PlaneLaw& law, bool fibres);
 
 /// Up to two families per element, unit vectors; empty where the body has no fibres.
 struct FibreFields {

@@ -54,6 +54,17 @@ ElementField element_field(const BuiltBody& body, const structure::Configuration
       const auto s = body.shell->element_state(now.x, e, body.at.offset);
       field.stretch.push_back(s.stretch_major);
       field.von_mises_Pa.push_back(s.von_mises_Pa);
+      field.exponent = std::max(field.exponent, s.exponent);
+    }
+  if (body.kirchhoff)
+    for (int e = 0; e < body.kirchhoff->elements(); ++e) {
+      const auto s = body.kirchhoff->layer_states(now.x, e, body.at.offset);
+      field.stretch.push_back(
+          std::max({s.bottom.stretch_major, s.middle.stretch_major, s.top.stretch_major}));
+      field.von_mises_Pa.push_back(
+          std::max({s.bottom.von_mises_Pa, s.middle.von_mises_Pa, s.top.von_mises_Pa}));
+      field.exponent =
+          std::max({field.exponent, s.bottom.exponent, s.middle.exponent, s.top.exponent});
     }
   if (body.beams)
     for (int e = 0; e < body.beams->elements(); ++e)
@@ -66,6 +77,7 @@ ElementField element_field(const BuiltBody& body, const structure::Configuration
       for (const auto& p : points) {
         stretch = std::max(stretch, p.stretch[2]);
         stress = std::max(stress, p.von_mises_Pa);
+        field.exponent = std::max(field.exponent, p.exponent);
       }
       field.stretch.push_back(stretch);
       field.von_mises_Pa.push_back(stress);
@@ -125,7 +137,9 @@ void Probes::check(const Probe& p, const Scene& built, const std::string& what) 
   }
 }
 
-Probes::Probes(const Case& scene, const Scene& built) : reference_(built.system->state.x) {
+Probes::Probes(const Case& scene, const Scene& built) {
+  for (const BuiltBody& body : built.bodies)
+    reference_.insert(reference_.end(), body.mesh.points.begin(), body.mesh.points.end());
   for (const Case& entry : scene.entries("probe")) {
     const auto text = [&](const char* key) { return entry.text(std::string("probe.") + key); };
     const auto& d = entry.reals("probe.direction");
@@ -175,7 +189,7 @@ double Probes::of_elements(const Probe& p, const Scene& scene) const {
     const auto add = [&](const auto& nodes) {
       for (int a : nodes) middle += reference_[body.at.offset + a] / static_cast<double>(nodes.size());
     };
-    body.shell ? add(body.mesh.triangles[e]) : add(body.mesh.lines[e]);
+    body.beams ? add(body.mesh.lines[e]) : add(body.mesh.triangles[e]);
     if ((middle - *p.point).norm() < least) least = (middle - *p.point).norm(), nearest = e;
   }
   return factor * values[nearest];
@@ -315,13 +329,15 @@ double Probes::value(const Probe& p, const Scene& scene, Present& present, doubl
           now.x[body.at.offset + t[0]].dot(now.x[body.at.offset + t[1]].cross(now.x[body.at.offset + t[2]]));
     return six / 6;
   }
+  const std::vector<int>& nodes = scene.nodes.at(p.of);
+  const Points& at = p.quantity == "velocity" ? now.v : now.x;
   Points vectors;
-  for (int a : scene.nodes.at(p.of)) {
-    if (p.quantity == "displacement") vectors.push_back(now.x[a] - reference_[a]);
-    if (p.quantity == "position") vectors.push_back(now.x[a]);
-    if (p.quantity == "velocity") vectors.push_back(now.v[a]);
+  for (int a : nodes) {
     if (p.quantity == "rotation")
       vectors.push_back(rotation_vector(now.rotation[scene.system->rotation_of(a)]));
+    else
+      vectors.push_back(at[a]);
+    if (p.quantity == "displacement") vectors.back() -= reference_[a];
   }
   return of_vectors(p, vectors);
 }

@@ -58,6 +58,7 @@ class Probes {
 /// Largest stretch and von Mises stress (Pa) of every element of a body at positions x of the system.
 struct ElementField {
   std::vector<double> stretch, von_mises_Pa;
+  double exponent = 0;  ///< the largest Q of the law's exp(Q): beyond 6 it is continued by its Taylor polynomial
 };
 ElementField element_field(const BuiltBody& body, const structure::Configuration& now);
 

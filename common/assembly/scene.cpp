@@ -19,7 +19,7 @@ using structure::System;
 
 class Composer {
  public:
-  explicit Composer(const Case& scene) : case_(scene) {
+  Composer(const Case& scene, const References& references) : case_(scene), references_(references) {
     s_.system = std::make_unique<System>();
     s_.end_s = scene.real("dynamics.end_s");
     const std::string& solver = scene.text("dynamics.solver");
@@ -32,6 +32,7 @@ class Composer {
     for (const Case& entry : case_.entries("body")) add_body(entry);
     for (const Case& entry : case_.entries("nodes")) add_nodes({case_, "nodes", entry});
     for (const Case& entry : case_.entries("support")) read_support({case_, "support", entry});
+    for (BuiltBody& body : s_.bodies) complete(body);
     for (BuiltBody& body : s_.bodies) add_to_system(body);
     for (const Support& support : s_.supports) apply(support);
     for (const Case& entry : case_.entries("tie")) add_tie({case_, "tie", entry});
@@ -48,12 +49,34 @@ class Composer {
   }
 
   void add_body(const Case& entry) {
-    BuiltBody body = build_body(case_, entry);
+    const auto reference = references_.find(entry.text("body.name"));
+    BuiltBody body = build_body(case_, entry, reference == references_.end() ? nullptr : &reference->second);
     for (const BuiltBody& other : s_.bodies)
       if (other.name == body.name) throw InputError("{}: there are two bodies of this name", what(body));
     body.at.offset = s_.bodies.empty() ? 0 : s_.bodies.back().at.end();
     body.at.count = static_cast<int>(body.mesh.points.size());
     s_.bodies.push_back(std::move(body));
+  }
+
+  void complete(BuiltBody& body) const {
+    if (!body.shell_mesh) return;
+    try {
+      complete_shell(body, edge_conditions(body, s_.supports));
+    } catch (const InputError& error) {
+      throw InputError("{}: {}", what(body), error.what());
+    }
+    std::vector<Motion> motions;
+    bool turns = false;
+    for (const Support& s : s_.supports) {
+      motions.push_back(s.motion);
+      turns = turns || s.motion.turn_rad != 0;
+    }
+    if (turns)
+      body.clamps = [motions](double t) {
+        std::vector<Mat3> turned;
+        for (const Motion& m : motions) turned.push_back(m.turn(t));
+        return turned;
+      };
   }
 
   void add_to_system(BuiltBody& body) {
@@ -117,7 +140,7 @@ class Composer {
       s.radius = e.real("radius_mm");
       s.inside = e.boolean("inside");
       s.tolerance = e.real("tolerance_mm");
-      nodes = select(body.mesh.points, s);
+      nodes = select(body.imaged, s);
     }
     return nodes;
   }
@@ -206,7 +229,7 @@ class Composer {
     }
     hold(s, body, *s_.system);
     for (const BuiltBody& shell : s_.bodies) {
-      if (shell.kind != Kind::shell) continue;
+      if (!shell.shell) continue;
       auto term = std::make_shared<ShellEdgeTerm>(shell, s);
       if (!term->empty()) s_.terms.push_back(std::move(term));
     }
@@ -240,6 +263,7 @@ class Composer {
   }
 
   const Case& case_;
+  const References& references_;
   Scene s_;
   bool static_ = false;
 };
@@ -277,8 +301,8 @@ const std::vector<int>& Scene::set(const std::string& name, const std::string& w
                    known.empty() ? "none is defined" : known);
 }
 
-Scene compose(const Case& scene) {
-  return Composer(scene).compose();
+Scene compose(const Case& scene, const References& references) {
+  return Composer(scene, references).compose();
 }
 
 }  // namespace valsalva::assembly

@@ -42,7 +42,10 @@ struct Scene {
   const std::vector<int>& set(const std::string& name, const std::string& what) const;
 };
 
+/// Stress-free shapes of bodies, by name, where they are not those of their meshes.
+using References = std::map<std::string, Points>;
+
 /// InputError that names the file, the entry, the key, what was found and what is expected.
-Scene compose(const Case& scene);
+Scene compose(const Case& scene, const References& references = {});
 
 }  // namespace valsalva::assembly

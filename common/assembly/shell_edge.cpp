@@ -18,7 +18,39 @@ double flexural_rigidity(const BuiltBody& body, int triangle) {
   return factor * body.bending_Pa * t * t * t / (12 * (1 - nu * nu));
 }
 
+/// Is the rotation about this direction held?
+bool holds_rotation(const Support& support, const Vec3& along) {
+  Vec3 turning = along.normalized();
+  for (int d = 0; d < 3; ++d)
+    if (!support.rotation[d]) turning[d] = 0;
+  return turning.norm() > 0.99;
+}
+
 }  // namespace
+
+structure::EdgeConditions edge_conditions(const BuiltBody& body, const std::vector<Support>& supports) {
+  using structure::EdgeSupport;
+  structure::EdgeConditions conditions;
+  const Points& x = body.mesh.points;
+  for (std::size_t k = 0; k < supports.size(); ++k) {
+    const Support& s = supports[k];
+    if (!s.holds_nodes()) continue;
+    const std::set<int> held(s.nodes.begin(), s.nodes.end());
+    for (const Edge& e : body.border()) {
+      if (!held.contains(e[0] + body.at.offset) || !held.contains(e[1] + body.at.offset)) continue;
+      structure::EdgeCondition wanted;
+      if (s.symmetry)
+        wanted = {EdgeSupport::symmetry, s.normal, 0};
+      else if (holds_rotation(s, x[e[1]] - x[e[0]]))
+        wanted = {EdgeSupport::clamped, Vec3::Zero(), static_cast<int>(k)};
+      else
+        continue;
+      structure::EdgeCondition& now = conditions[{std::min(e[0], e[1]), std::max(e[0], e[1])}];
+      if (now.support != EdgeSupport::clamped) now = wanted;
+    }
+  }
+  return conditions;
+}
 
 ShellEdgeTerm::ShellEdgeTerm(const BuiltBody& body, const Support& support)
     : name_("edge of " + body.name + " at " + support.name), motion_(support.motion) {
@@ -31,10 +63,7 @@ ShellEdgeTerm::ShellEdgeTerm(const BuiltBody& body, const Support& support)
     const Vec3 along = x[b] - x[a], normal = along.cross(x[c] - x[a]);
     Edge edge{{a + o, b + o, c + o}, support.normal, 0, 0};
     if (!support.symmetry) {
-      Vec3 turning = along.normalized();
-      for (int d = 0; d < 3; ++d)
-        if (!support.rotation[d]) turning[d] = 0;
-      if (turning.norm() < 0.99) continue;
+      if (!holds_rotation(support, along)) continue;
       edge.mirror = along.cross(normal).normalized();
     }
     edge.stiffness = flexural_rigidity(body, element) * along.squaredNorm() / (0.5 * normal.norm());

@@ -1,5 +1,5 @@
-// The rotation of a shell's edge where a support holds it: a clamp or a symmetry plane. Shell nodes have no
-// rotations, and a hinge needs two triangles; here the second is the mirror image of the first.
+// The rotation of a hinge shell's edge where a support holds it: a clamp or a symmetry plane. Shell nodes
+// have no rotations, and a hinge needs two triangles; here the second is the mirror image of the first.
 //
 // With N the triangle's unit normal, m the plane's (for a clamp: in the sheet, across the edge, turned with
 // the support), the mirrored normal makes the angle 2 phi with N, sin phi = N . m, and half of the energy of
@@ -12,6 +12,10 @@
 #include "assembly/supports.hpp"
 
 namespace valsalva::assembly {
+
+/// What the supports (tethers left out) ask of the border edges of a Kirchhoff shell; clamps turn with the
+/// support of their number.
+structure::EdgeConditions edge_conditions(const BuiltBody& body, const std::vector<Support>& supports);
 
 class ShellEdgeTerm : public structure::ForceTerm {
  public:

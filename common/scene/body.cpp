@@ -75,6 +75,9 @@ void declare_material_keys(Schema& schema) {
                 "Solids: mixed does not lock near incompressibility");
   schema.real("body.density_g_per_mm3", 1.1e-3, positive(), "Density");
   schema.real("body.stiffness_factor", 1, positive(), "Multiplies the law's matrix part and bending");
+  schema.choice(
+      "body.shell_element", "kirchhoff", {"kirchhoff", "hinge"},
+      "Shells: Kirchhoff-Love triangles (bending on any mesh), or flat triangles with bending hinges");
   schema.real("body.membrane_scale", 1, positive(), "Multiplies a shell's membrane stiffness alone");
   schema.real("body.bending_scale", 1, not_negative(), "Multiplies a shell's bending stiffness alone");
   schema.choice("body.fibres", "none", {"none", "constant", "cylindrical"},
@@ -229,7 +232,9 @@ void declare_contact_pair(Schema& schema) {
   schema.reals("contact_pair.time_s", {}, 0, not_negative(), "Times of its factor table");
   schema.reals("contact_pair.factor", {}, 0, unlimited(),
                "Its values; empty: 0 at the start to 1 at the end");
-  schema.real("contact_pair.friction", 0, {0, 10}, "Coulomb coefficient, against the rigid surface");
+  schema.real("contact_pair.friction", 0, {0, 10}, "Coulomb coefficient");
+  schema.real("contact_pair.slip_share", 0.05, {1e-6, 1},
+              "Friction between bodies: way of a pair before it slips, over the contact distance");
   schema.real("contact_pair.stiffness_kPa_per_mm", 1e4, positive(), "Penalty against the rigid surface");
   schema.real("contact_pair.offset_mm", -1, {-1, 100},
               "Distance at which a node meets the rigid surface; -1: half the thickness (solids: 0)");
@@ -261,6 +266,12 @@ void declare_dynamics(Schema& schema) {
   schema.integer("dynamics.max_iterations", 400000, {1, 100000000},
                  "quasi_static: most iterations a load step");
   schema.integer("dynamics.newton_iterations", 25, {2, 1000}, "static, implicit: before the step is halved");
+  schema.choice(
+      "dynamics.prestress", "none", {"none", "backward_displacement"},
+      "static solvers: is the given shape the loaded one, from which the stress-free shape is found?");
+  schema.real("dynamics.prestress_tolerance_mm", 1e-3, positive(),
+              "Largest distance of a node of the loaded shape from the given one");
+  schema.integer("dynamics.prestress_iterations", 50, {1, 10000}, "Most equilibria on the way there");
   schema.real("dynamics.speed_limit_mm_per_s", 1e6, positive(), "explicit: alarm");
   schema.integer("dynamics.history_rows", 200, {1, 1000000},
                  "Rows of history.csv over the run (dynamic solvers)");

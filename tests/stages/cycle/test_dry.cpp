@@ -74,10 +74,11 @@ class DryCycle : public testing::Test {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
   }
-  Outcome run(const std::string& out, const std::string& options = "",
-              const std::string& file = "case.toml") const {
-    const std::string command = fmt::format("cd {} && {} {} --quiet --out runs/{} {} > log 2>&1",
-                                            folder_.path().string(), CYCLE_PROGRAM, file, out, options);
+  Outcome run(const std::string& out, const std::string& options = "", const std::string& file = "case.toml",
+              const std::string& before = "") const {
+    const std::string command =
+        fmt::format("cd {} && {}{} {} --quiet --out runs/{} {} > log 2>&1", folder_.path().string(), before,
+                    CYCLE_PROGRAM, file, out, options);
     const int status = std::system(command.c_str());
     std::ostringstream text;
     text << std::ifstream(folder_ / "log").rdbuf();
@@ -116,15 +117,47 @@ TEST_F(DryCycle, RunsWithoutAParentAndLeavesViewsHistoryAndMetrics) {
 }
 
 TEST_F(DryCycle, ContinuesBitForBit) {
-  ASSERT_EQ(run("whole", "--steps 90").code, 0);
-  ASSERT_EQ(run("parts", "--steps 40").code, 0);
-  ASSERT_EQ(run("parts", "--resume --steps 50").code, 0);
-  const auto a = state::read(in("whole", "state_000090.h5"), "cycle");
-  const auto b = state::read(in("parts", "state_000090.h5"), "cycle");
-  ASSERT_EQ(a.restart.size(), b.restart.size());
-  for (const auto& [name, array] : a.restart) EXPECT_EQ(array.data, b.array(name).data) << name;
-  EXPECT_EQ(a.mesh("sheet").points, b.mesh("sheet").points);
-  EXPECT_EQ(text_of(in("whole", "history.csv")), text_of(in("parts", "history.csv")));
+  const std::vector<std::pair<std::string, std::array<int, 3>>> cases{{"explicit", {90, 40, 50}},
+                                                                      {"quasi_static", {300, 130, 170}},
+                                                                      {"static", {6, 2, 4}},
+                                                                      {"implicit", {8, 3, 5}}};
+  for (const auto& [solver, steps] : cases) {
+    const auto options = [&](const char* extra, int count) {
+      return fmt::format("--set dynamics.solver={} {} --steps {}", solver, extra, count);
+    };
+    const std::string whole = solver + "_whole", parts = solver + "_parts";
+    ASSERT_EQ(run(whole, options("", steps[0])).code, 0);
+    ASSERT_EQ(run(parts, options("", steps[1])).code, 0);
+    ASSERT_EQ(run(parts, options("--resume", steps[2])).code, 0);
+    const std::string state = fmt::format("state_{:06d}.h5", steps[0]);
+    const auto one = state::read(in(whole, state), "cycle"), other = state::read(in(parts, state), "cycle");
+    ASSERT_EQ(one.restart.size(), other.restart.size());
+    for (const auto& [name, array] : one.restart) EXPECT_EQ(array.data, other.array(name).data) << name;
+    EXPECT_EQ(one.mesh("sheet").points, other.mesh("sheet").points) << solver;
+    EXPECT_EQ(text_of(in(whole, "history.csv")), text_of(in(parts, "history.csv"))) << solver;
+  }
+}
+
+// Killed by SIGKILL at any moment and resumed until it is done: the same final state.
+TEST_F(DryCycle, KilledAndResumedEndsInTheSameState) {
+  const std::string options = "--set dynamics.end_s=0.2 --set output.checkpoint_s=0.05";
+  ASSERT_EQ(run("whole", options).code, 0);
+  int kills = 0;
+  Outcome last{-1, ""};
+  for (int attempt = 0; attempt < 40 && last.code != 0; ++attempt) {
+    const bool begun = fs::exists(in("killed", "")) && !fs::is_empty(in("killed", ""));
+    last = run("killed", options + (begun ? " --resume" : ""), "case.toml", "timeout -s KILL 0.7 ");
+    if (last.code != 0) ++kills;
+    if (last.code == 2) FAIL() << last.text;
+    if (attempt == 20) last = run("killed", options + (begun ? " --resume" : ""));
+  }
+  ASSERT_EQ(last.code, 0) << last.text;
+  std::printf("killed %d times\n", kills);
+  const std::string state = fmt::format("state_{:06d}.h5", summary("whole")["steps"].get<long>());
+  const auto one = state::read_final(in("whole", state), "cycle"),
+             other = state::read_final(in("killed", state), "cycle");
+  for (const auto& [name, array] : one.restart) EXPECT_EQ(array.data, other.array(name).data) << name;
+  EXPECT_EQ(text_of(in("whole", "history.csv")), text_of(in("killed", "history.csv")));
 }
 
 TEST_F(DryCycle, StaticAndExplicitMeshesOfSolidsReadBack) {
@@ -193,6 +226,106 @@ TEST_F(DryCycle, ChecksEstimatesAndRefuses) {
   write("absent.toml", "[[body]]\nname = \"b\"\nfile = \"absent.msh\"\n");
   EXPECT_EQ(run("absent", "", "absent.toml").code, 2);
   EXPECT_FALSE(fs::exists(in("absent", "")));
+}
+
+// Each is refused with exit code 2 and nothing written; the message holds the words.
+TEST_F(DryCycle, BadInputsAreRefusedByName) {
+  const std::string box = R"(
+[[body]]
+name = "box"
+kind = "solid"
+shape = "box"
+size_mm = [1, 1, 1]
+divisions = [1, 1, 1]
+law = "linear"
+young_kPa = 10
+[[nodes]]
+name = "all"
+body = "box"
+)";
+  const auto body = [](const std::string& rest) { return "[[body]]\nname = \"b\"\n" + rest; };
+  const std::string wedge = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+15
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 1 0 1
+6 0 1 1
+7 0.5 0 0
+8 0 0.5 0
+9 0 0 0.5
+10 0.5 0.5 0
+11 1 0 0.5
+12 0 1 0.5
+13 0.5 0 1
+14 0 0.5 1
+15 0.5 0.5 1
+$EndNodes
+$Elements
+1
+1 18 2 1 1 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15
+$EndElements
+)";
+  write("wedge15.msh", wedge);
+  write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("cut.msh", "$MeshFormat\n4.1 0 8\n$EndMesh");
+  struct Bad {
+    std::string text;
+    std::vector<std::string> words;
+  };
+  const std::vector<Bad> all{
+      {"[[body]]\nshape = \"plate\"\n", {"name is missing"}},
+      {body("shape = \"plate\"\nsize_mm = [1]\n"), {"[[body]] 'b'", "size_mm", "1 entries", "2"}},
+      {body("kind = \"beams\"\nshape = \"sphere\"\n"), {"sphere", "beams"}},
+      {body("file = \"gone.msh\"\n"), {"gone.msh", "no such mesh file"}},
+      {body("file = \"cut.msh\"\n"), {"cut.msh"}},
+      {body("kind = \"solid\"\nfile = \"wedge15.msh\"\n"), {"Prism", "expected"}},
+      {body("kind = \"solid\"\nfile = \"open.obj\"\n"), {"open.obj", "solid elements"}},
+      {body("kind = \"rigid\"\nmotion = \"free\"\nfile = \"open.obj\"\n"), {"not closed", "mass_g"}},
+      {box + "[[body]]\nname = \"box\"\nshape = \"plate\"\nsize_mm = [1, 1]\ndivisions = [1, "
+             "1]\nthickness_mm = "
+             "0.1\nlaw = \"linear\"\nyoung_kPa = 1\n",
+       {"two bodies"}},
+      {box + "[[body]]\nname = \"s\"\nshape = \"plate\"\nsize_mm = [1, 1]\ndivisions = [1, 1]\nlaw = "
+             "\"linear\"\nyoung_kPa = 1\n",
+       {"thickness_mm is 0"}},
+      {box + "[[nodes]]\nname = \"n\"\nbody = \"boks\"\n", {"boks", "box"}},
+      {box + "[[nodes]]\nname = \"n\"\nbody = \"box\"\nselect = \"plane\"\npoint_mm = [0, 0, 7]\n",
+       {"no node"}},
+      {box + "[[nodes]]\nname = \"n\"\nbody = \"box\"\nselect = \"difference\"\nsets = [\"all\", \"all\"]\n",
+       {"no node"}},
+      {box + "[[support]]\nname = \"s\"\nnodes = \"all\"\n", {"hold is empty"}},
+      {box + "[[support]]\nname = \"s\"\nnodes = \"all\"\nhold = [\"X\"]\n", {"'X'", "symmetry"}},
+      {box + "[[support]]\nname = \"s\"\nnodes = \"all\"\nhold = [\"x\"]\ngradient = [1, 2]\n",
+       {"gradient", "2 entries", "9"}},
+      {box + "[[load]]\nname = \"l\"\nnodes = \"all\"\n", {"force_N is zero"}},
+      {box + "[[load]]\nname = \"l\"\nkind = \"pressure\"\nbody = \"box\"\nnodes = \"none\"\npressure_kPa = "
+             "1\n",
+       {"'none'", "all"}},
+      {box + "[[load]]\nname = \"l\"\nnodes = \"all\"\nforce_N = [1, 0, 0]\nshare = \"length\"\n",
+       {"share", "border edge"}},
+      {box + "[[contact_pair]]\nname = \"c\"\nbody = \"box\"\nother = \"box\"\n",
+       {"no thickness", "distance_mm"}},
+      {box + "[[contact_pair]]\nname = \"c\"\nbody = \"box\"\nsurface = \"level_set\"\nfile = \"open.obj\"\n",
+       {"not a closed surface"}},
+      {box + "[[probe]]\nname = \"p\"\nquantity = \"stress\"\nof = \"box\"\n", {"component", "xx"}},
+      {box + "[[probe]]\nname = \"p\"\nquantity = \"contact_force\"\nof = \"c\"\n", {"[[contact_pair]]"}},
+      {box + "[dynamics]\nprestress = \"backward_displacement\"\n", {"prestress", "quasi_static"}},
+      {box + "[dynamics]\nsolver = \"newton\"\n", {"newton", "static"}},
+      {box + "[dynamics]\nend_s = -1\n", {"end_s", "-1"}},
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    write("bad.toml", all[i].text);
+    const Outcome refused = run("bad", "", "bad.toml");
+    EXPECT_EQ(refused.code, 2) << all[i].text << refused.text;
+    for (const std::string& word : all[i].words)
+      EXPECT_NE(refused.text.find(word), std::string::npos) << word << " is not in: " << refused.text;
+    EXPECT_FALSE(fs::exists(in("bad", "summary.json"))) << all[i].text;
+  }
 }
 
 }  // namespace valsalva

@@ -73,6 +73,12 @@ of = "clamp"
 component = "z"
 )";
 
+/// The same with a sheet of hinges.
+std::string hinged(std::string text) {
+  text.insert(text.find("shape = "), "shell_element = \"hinge\"\n");
+  return text;
+}
+
 void expect_refused(const std::string& text, const std::vector<std::string>& words) {
   try {
     const Case scene = read(text);
@@ -147,6 +153,11 @@ TEST(Scene, RefusesWhatIsWrongAndSaysWhere) {
                  {"start1"});
   expect_refused(
       plate + "[[load]]\nname = \"l\"\nkind = \"moment\"\nnodes = \"tip\"\nmoment_N_mm = [1, 0, 0]\n",
+      {"along them"});
+  expect_refused(
+      "[[body]]\nname = \"b\"\nkind = \"solid\"\nshape = \"box\"\nsize_mm = [1, 1, 1]\ndivisions = "
+      "[1, 1, 1]\nlaw = \"linear\"\nyoung_kPa = 1\n[[nodes]]\nname = \"n\"\nbody = "
+      "\"b\"\n[[load]]\nname = \"l\"\nkind = \"moment\"\nnodes = \"n\"\nmoment_N_mm = [1, 0, 0]\n",
       {"no rotation"});
   expect_refused(
       plate + "[[load]]\nname = \"l\"\nnodes = \"tip\"\nforce_N = [1, 0, 0]\ntime_s = [0, 1]\nfactor = [1]\n",
@@ -176,7 +187,7 @@ TEST(Scene, RefusesWhatIsWrongAndSaysWhere) {
 }
 
 TEST(Scene, ForcesOfContactTethersAndClampsAreGradients) {
-  Scene s = compose(read(plate + R"(
+  Scene s = compose(read(hinged(plate) + R"(
 [[support]]
 name = "tethers"
 nodes = "tip"
@@ -208,7 +219,7 @@ radius_mm = 1.2
 }
 
 TEST(Scene, ClampTermIsTheTangentOfItsForces) {
-  Scene s = compose(read(loaded));
+  Scene s = compose(read(hinged(loaded)));
   structure::Configuration now = s.system->state;
   now.x = shaken(now.x, 0.05);
   for (const auto& term : s.terms) {

@@ -10,6 +10,7 @@
 #include "assembly/march.hpp"
 #include "assembly/probes.hpp"
 #include "scene/scene.hpp"
+#include "temporary_folder.hpp"
 
 namespace valsalva::test {
 
@@ -24,10 +25,17 @@ class CaseRun {
   /// replacements: texts of the file and what to put in their place.
   explicit CaseRun(const std::string& file,
                    const std::vector<std::pair<std::string, std::string>>& replacements = {})
-      : case_(load(file, replacements)),
-        scene(assembly::compose(case_)),
-        march(assembly::make_march(case_, scene)),
-        probes_(case_, scene) {}
+      : CaseRun(load(file, replacements)) {}
+
+  /// A scene given here, with files beside it.
+  static std::unique_ptr<CaseRun> of_text(const std::string& text,
+                                          const std::map<std::string, std::string>& files = {}) {
+    const TemporaryFolder folder;
+    for (const auto& [name, content] : files) std::ofstream(folder / name) << content;
+    std::ofstream(folder / "case.toml") << text;
+    return std::unique_ptr<CaseRun>(
+        new CaseRun(Case::load(folder / "case.toml", schema(), Fidelity::standard, {})));
+  }
 
   void to_end() {
     while (!march->finished()) march->step();
@@ -55,6 +63,11 @@ class CaseRun {
     }
     return Case::from_text(text, file, schema(), Fidelity::standard);
   }
+  explicit CaseRun(Case loaded)
+      : case_(std::move(loaded)),
+        scene(assembly::compose(case_)),
+        march(assembly::make_march(case_, scene)),
+        probes_(case_, scene) {}
   Case case_;
 
  public:

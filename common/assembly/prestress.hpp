@@ -1,0 +1,30 @@
+// The stress-free shape of bodies whose given shape is the loaded one (an image under pressure): backward
+// displacement.
+//
+//   X_0 = x*,   X_{k+1} = X_k - r (x(X_k) - x*),
+// x* the given shape, x(X) the equilibrium at the end of the run from the stress-free shape X. It is a fixed
+// point with contraction where displacements are small against the body's size; r starts at 1, is halved when
+// the error grows, and the step is taken back. Sources: Sellier 2011 (An iterative method for the inverse
+// elasto-static problem, J. Fluids Struct. 27:1461); Bols et al. 2013, J. Comput. Appl. Math. 246:10.
+#pragma once
+
+#include "assembly/scene.hpp"
+
+namespace valsalva::assembly {
+
+struct Prestress {
+  References reference;  ///< stress-free shapes of the deformable bodies
+  int iterations = 0;    ///< equilibria that were computed
+  double error_mm = 0;   ///< largest distance of a node from its place in the given shape
+};
+
+/// Does the scene ask for it? InputError unless its solver is static or quasi_static.
+bool wants_prestress(const Case& scene);
+
+/// NumericalFailure when the tolerance is not reached. `say` is told the error of every iteration.
+Prestress find_stress_free(const Case& scene, const std::function<void(int, double)>& say);
+
+/// Largest distance of a node of a deformable body from its place in the given shape.
+double distance_from_given(const Scene& scene);
+
+}  // namespace valsalva::assembly
