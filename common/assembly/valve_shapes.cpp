@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -40,47 +41,66 @@ Vec3 free_edge(const ValveShape& v, double s) {
 /// A curve in the (s, z) plane, to be walked through evenly by its length; s counts as `width` mm.
 class Curve {
  public:
-  template <typename Function>
-  Curve(double width, const Function& at) {
-    constexpr int pieces = 400;
-    for (int i = 0; i <= pieces; ++i) {
-      point_.push_back(at(static_cast<double>(i) / pieces));
-      const Eigen::Vector2d step = i ? Eigen::Vector2d(point_[i] - point_[i - 1]) : Eigen::Vector2d::Zero();
-      length_.push_back(i ? length_.back() + std::hypot(width * step.x(), step.y()) : 0.0);
+  using Function = std::function<Eigen::Vector2d(double)>;
+  Curve(double width, Function at) : at_(std::move(at)) {
+    Eigen::Vector2d before = at_(0);
+    for (int i = 1; i <= pieces; ++i) {
+      const Eigen::Vector2d now = at_(static_cast<double>(i) / pieces), step = now - before;
+      length_.push_back(length_.back() + std::hypot(width * step.x(), step.y()));
+      before = now;
     }
   }
   Eigen::Vector2d at(double share) const {
     const double wanted = share * length_.back();
-    auto next = std::upper_bound(length_.begin(), length_.end(), wanted);
-    if (next == length_.end()) return point_.back();
+    const auto next = std::upper_bound(length_.begin() + 1, length_.end() - 1, wanted);
     const auto i = next - length_.begin();
-    const double a = (wanted - length_[i - 1]) / (length_[i] - length_[i - 1]);
-    return (1 - a) * point_[i - 1] + a * point_[i];
+    const double within = (wanted - length_[i - 1]) / (length_[i] - length_[i - 1]);
+    return at_((static_cast<double>(i - 1) + within) / pieces);
   }
 
  private:
-  std::vector<Eigen::Vector2d> point_;
-  std::vector<double> length_;
+  static constexpr int pieces = 400;
+  Function at_;
+  std::vector<double> length_{0};
 };
 
-/// The leaflet as a patch with four sides (Coons 1967) in the (s, z) plane: below, the middle of the
-/// attachment; at the sides, its steep parts with the commissures (or the cuts of a part); above, the free
-/// edge. So the elements keep their shape into the commissures.
+/// The leaflet as a patch with four sides in the (s, z) plane: below, the middle of the attachment; at the
+/// sides, its steep parts with the commissures (or the cuts of a part); above, the free edge. Inside, the
+/// harmonic map of the square (one to one, as the region is all but convex): where two sides meet in a
+/// straight line it keeps the elements open, which blending between the sides would not.
 class Outline {
  public:
   Outline(const ValveShape& v, std::array<double, 2> part)
       : left_corner_(part[0] > -1 ? part[0] : std::min(-corner, part[1])),
         right_corner_(part[1] < 1 ? part[1] : std::max(corner, part[0])),
         low_(width(v),
-             [&](double u) { return attached(v, left_corner_ + u * (right_corner_ - left_corner_)); }),
-        high_(width(v), [&](double u) { return on_edge(v, part[0] + u * (part[1] - part[0])); }),
-        left_(width(v), [&](double u) { return side(v, part[0], left_corner_, u); }),
-        right_(width(v), [&](double u) { return side(v, part[1], right_corner_, u); }) {}
+             [=, this](double u) { return attached(v, left_corner_ + u * (right_corner_ - left_corner_)); }),
+        high_(width(v), [=](double u) { return on_edge(v, part[0] + u * (part[1] - part[0])); }),
+        left_(width(v), [=, this](double u) { return side(v, part[0], left_corner_, u); }),
+        right_(width(v), [=, this](double u) { return side(v, part[1], right_corner_, u); }),
+        inside_((cells + 1) * (cells + 1)) {
+    for (int j = 0; j <= cells; ++j)
+      for (int i = 0; i <= cells; ++i) node(i, j) = blended(share(i), share(j));
+    constexpr double relaxation = 1.9;  // of Gauss and Seidel's iteration
+    for (int sweep = 0; sweep < 300; ++sweep)
+      for (int j = 1; j < cells; ++j)
+        for (int i = 1; i < cells; ++i) {
+          const Eigen::Vector2d mean =
+              0.25 * (node(i - 1, j) + node(i + 1, j) + node(i, j - 1) + node(i, j + 1));
+          node(i, j) += relaxation * (mean - node(i, j));
+        }
+  }
 
   Eigen::Vector2d at(double u, double w) const {
-    return (1 - w) * low_.at(u) + w * high_.at(u) + (1 - u) * left_.at(w) + u * right_.at(w) -
-           (1 - u) * (1 - w) * low_.at(0) - u * (1 - w) * low_.at(1) - (1 - u) * w * high_.at(0) -
-           u * w * high_.at(1);
+    if (u <= 0) return left_.at(w);
+    if (u >= 1) return right_.at(w);
+    if (w <= 0) return low_.at(u);
+    if (w >= 1) return high_.at(u);
+    const int i = std::min(static_cast<int>(u * cells), cells - 1),
+              j = std::min(static_cast<int>(w * cells), cells - 1);
+    const double a = u * cells - i, b = w * cells - j;
+    return (1 - b) * ((1 - a) * node(i, j) + a * node(i + 1, j)) +
+           b * ((1 - a) * node(i, j + 1) + a * node(i + 1, j + 1));
   }
 
  private:
@@ -96,8 +116,20 @@ class Outline {
     return attached(v, end) + (u - bend) / (1 - bend) * (on_edge(v, end) - attached(v, end));
   }
 
+  /// Coons' patch (1967).
+  Eigen::Vector2d blended(double u, double w) const {
+    return (1 - w) * low_.at(u) + w * high_.at(u) + (1 - u) * left_.at(w) + u * right_.at(w) -
+           (1 - u) * (1 - w) * low_.at(0) - u * (1 - w) * low_.at(1) - (1 - u) * w * high_.at(0) -
+           u * w * high_.at(1);
+  }
+  static constexpr int cells = 48;
+  static double share(int i) { return static_cast<double>(i) / cells; }
+  Eigen::Vector2d& node(int i, int j) { return inside_[j * (cells + 1) + i]; }
+  const Eigen::Vector2d& node(int i, int j) const { return inside_[j * (cells + 1) + i]; }
+
   double left_corner_, right_corner_;
   Curve low_, high_, left_, right_;
+  std::vector<Eigen::Vector2d> inside_;
 };
 
 }  // namespace
