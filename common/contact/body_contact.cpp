@@ -164,11 +164,10 @@ double BodyContact::limited(const Points& from, const Points& to, const std::vec
     const std::size_t end = std::min(pairs.size(), static_cast<std::size_t>(c + 1) * chunk_size);
     for (std::size_t i = static_cast<std::size_t>(c) * chunk_size; i < end; ++i) {
       const std::array<Vec3, 4> x0 = places(from, pairs[i].node), x1 = places(to, pairs[i].node);
-      const double distance = nearest(kind, x0).distance;
-      if (distance > 0)
-        least[c] = std::min(
-            least[c],
-            allowed_share(kind, x0, x1, approach * std::min(distance, pairs[i].contact_distance_mm)));
+      const double distance = nearest(kind, x0).distance, h = pairs[i].contact_distance_mm;
+      // Round-off of positions must stay far below the distance: nearly no approach beyond the floor.
+      const double stop = std::max(approach * std::min(distance, h), std::min(floor * h, 0.9999 * distance));
+      if (distance > 0) least[c] = std::min(least[c], allowed_share(kind, x0, x1, stop));
     }
   }
   for (double own : least) share = std::min(share, own);

@@ -89,6 +89,7 @@ class BodyContact : public structure::ForceTerm {
     Pressure at;
     PairFriction friction;
   };
+  static constexpr double floor = 1e-5;    // of the contact distance, below which pairs hardly approach
   static constexpr double approach = 0.8;  // by which pairs may come nearer within a step
 
   /// Finds the pairs in contact at x, unless x is where they were found last.

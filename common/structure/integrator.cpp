@@ -97,13 +97,14 @@ void Integrator::move() {
   std::vector<RigidBody> rigid;
   for (const auto& body : rigid_) rigid.push_back(*body);
   constexpr int most = 50;
+  constexpr double collapse = 1e-9;
   for (int repeats = 0;; ++repeats) {
     move_nodes();
     turn_nodes();
     double share = 1;
     for (const auto& term : terms_) share = std::min(share, term->allowed_motion(before, system_.state.x));
     if (share >= 1) return;
-    if (!(share > 0) || repeats == most)
+    if (!(share > 0) || repeats == most || dt_ * share < collapse * first_dt_)
       throw NumericalFailure(
           "structure: no step is small enough to keep bodies apart at {:.6g} s (share {:.3g} of {:.3g} s); "
           "the "
