@@ -149,6 +149,7 @@ def slivers():
              None if found is None or not exact or result["exit"] else abs(found / exact - 1),
              "force against the regular mesh" if not result["exit"] else "")
         if height >= 1e-6:
+            sliver_mesh(FOLDER / (name + "_explicit") / "mesh.vtk", height)
             scene["dynamics"] = {"solver": "explicit", "end_s": 1e-5}
             result = run(scene, name + "_explicit", timeout_s=120)
             note("slivers", f"height {height:g}, explicit, 10 us", result, None, "" if result["exit"] else "runs")
@@ -165,7 +166,7 @@ def inversion():
 
 def pressure():
     for law_name, law in {"neo-Hookean": TISSUE,
-                          "contact-fsi-2021 fibres": {"material": "contact-fsi-2021/leaflet-fibre-reinforced",
+                          "contact-fsi-2021 fibres": {"material": "contact-fsi-2021/leaflet-fibre",
                                                       "fibres": "constant", "fibre_direction": [1.0, 0.0, 0.0],
                                                       "density_g_per_mm3": 1.1e-3}}.items():
         reached = {}
@@ -243,7 +244,7 @@ def time_step():
 def crimp():
     """The smallest device of the tests, crimped to ever smaller diameters."""
     case = runs.ROOT / "tests" / "stages" / "chain" / "small.toml"
-    build = runs.ROOT / "build" / "bin"
+    build = runs.BIN
     subprocess.run([build / "valsalva-stent", case, "--out", FOLDER / "stent"], check=True, stdout=subprocess.DEVNULL)
     state = max((FOLDER / "stent").glob("state_*.h5"))
     for diameter in (5.7, 4.0, 3.0):

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+BIN = Path(os.environ.get("VALSALVA_BIN", ROOT / "build" / "bin"))
 
 
 def toml(scene):
@@ -39,7 +40,7 @@ def run(scene, folder, timeout_s=900, threads=1):
     folder.mkdir(parents=True, exist_ok=True)
     case = folder / "case.toml"
     case.write_text(scene if isinstance(scene, str) else toml(scene))
-    words = [str(ROOT / "build" / "bin" / "valsalva-cycle"), str(case), "--out", str(folder / "out")]
+    words = [str(BIN / "valsalva-cycle"), str(case), "--out", str(folder / "out")]
     for old in (folder / "out").glob("*"):
         old.unlink()
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()

@@ -73,46 +73,49 @@ def value(result, name):
     return next((v for key, v in result["last"].items() if key.startswith(name)), None)
 
 
-def main():
-    out = Path(sys.argv[1]) if len(sys.argv) > 1 else runs.ROOT / "docs" / "results"
+SIZES = {"tet4 displacement": (1, 2, 4), "tet4 mixed": (1, 2, 4), "tet10 displacement": (1, 2), "tet10 mixed": (1, 2),
+         "hex8 displacement": (1, 2, 4), "hex8 mixed": (1, 2, 4), "hex27 displacement": (1, 2), "hex27 mixed": (1, 2),
+         "shell kirchhoff": (1, 2, 4), "shell hinge": (1, 2, 4), "beams": (1, 2, 4)}
+
+
+def row_of(part, kind, what, result, reference):
+    row = {"part": part, "kind": kind, "resolution": what, "exit": result["exit"], "wall_s": round(result["wall_s"], 3),
+           "processor_s": round(result["processor_s"], 3), "tip_mm": value(result, "tip"),
+           "stress_kPa": value(result, "stress")}
+    for key, name in (("tip_mm", "tip_error"), ("stress_kPa", "stress_error")):
+        right, found = reference.get(key), row[key]
+        row[name] = "" if right is None or found is None else abs(found / right - 1)
+    print(row, flush=True)
+    return row
+
+
+def static_study(reference=None, kinds=SIZES):
     rows = []
+    if reference is None:
+        rows.append(row_of("static", "hex27 mixed", "n = 4, reference", static("hex27 mixed", 4), {}))
+        reference = rows[0]
+    for kind in kinds:
+        rows += [row_of("static", kind, f"n = {n}", static(kind, n), reference) for n in SIZES[kind]]
+    return rows
 
-    def note(part, kind, what, result, reference):
-        row = {"part": part, "kind": kind, "resolution": what, "exit": result["exit"],
-               "wall_s": round(result["wall_s"], 3), "processor_s": round(result["processor_s"], 3),
-               "tip_mm": value(result, "tip"), "stress_kPa": value(result, "stress")}
-        for key, name in (("tip_mm", "tip_error"), ("stress_kPa", "stress_error")):
-            right, found = reference.get(key), row[key]
-            row[name] = "" if right is None or found is None else abs(found / right - 1)
-        rows.append(row)
-        print(row, flush=True)
 
-    finest = static("hex27 mixed", 4)
-    reference = {"tip_mm": value(finest, "tip"), "stress_kPa": value(finest, "stress")}
-    note("static", "hex27 mixed", "n = 4, reference", finest, {})
-    for kind, sizes in {"tet4 displacement": (1, 2, 4), "tet4 mixed": (1, 2, 4), "tet10 displacement": (1, 2),
-                        "tet10 mixed": (1, 2), "hex8 displacement": (1, 2, 4), "hex8 mixed": (1, 2, 4),
-                        "hex27 displacement": (1, 2), "hex27 mixed": (1, 2), "shell kirchhoff": (1, 2, 4),
-                        "shell hinge": (1, 2, 4), "beams": (1, 2, 4)}.items():
-        for n in sizes:
-            note("static", kind, f"n = {n}", static(kind, n), reference)
-
-    finest = dynamic("explicit", 0.0, 0.08)
-    reference = {"tip_mm": value(finest, "tip"), "stress_kPa": value(finest, "stress")}
-    note("dynamic", "explicit", "safety 0.08, reference", finest, {})
+def dynamic_study():
+    rows = [row_of("dynamic", "explicit", "safety 0.08, reference", dynamic("explicit", 0.0, 0.08), {})]
     for safety in (0.9, 0.4, 0.2):
-        note("dynamic", "explicit", f"safety {safety}", dynamic("explicit", 0.0, safety), reference)
+        rows.append(row_of("dynamic", "explicit", f"safety {safety}", dynamic("explicit", 0.0, safety), rows[0]))
     for radius in (0.8, 1.0):
         for count in (10, 20, 40, 80, 160):
-            note("dynamic", f"implicit, radius {radius}", f"{count} steps",
-                 dynamic("implicit", 0.027 / count, radius=radius), reference)
+            rows.append(row_of("dynamic", f"implicit, radius {radius}", f"{count} steps",
+                               dynamic("implicit", 0.027 / count, radius=radius), rows[0]))
+    return rows
 
+
+def write(rows, out):
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "structure-tradeoff.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0].keys())
         writer.writeheader()
         writer.writerows(rows)
-
     figure, axes = plt.subplots(1, 3, figsize=(15, 5))
     for axis, part, error, title in ((axes[0], "static", "tip_error", "static: tip displacement"),
                                      (axes[1], "static", "stress_error", "static: stress at a quarter length"),
@@ -121,13 +124,17 @@ def main():
             line = [(row["processor_s"], row[error]) for row in rows
                     if row["part"] == part and row["kind"] == kind and row[error] not in ("", 0)]
             if line:
-                axis.loglog(*zip(*sorted(line)), "o-", label=kind, markersize=4, linewidth=1)
+                axis.loglog(*zip(*line), "o-", label=kind, markersize=4, linewidth=1)
         axis.set(title=title, xlabel="processor time, s", ylabel="relative error")
         axis.grid(True, which="both", alpha=0.3)
         axis.legend(fontsize=7)
     figure.tight_layout()
     figure.savefig(out / "structure-tradeoff.png", dpi=110)
     print(f"written: {out / 'structure-tradeoff.csv'}, {out / 'structure-tradeoff.png'}")
+
+
+def main():
+    write(static_study() + dynamic_study(), Path(sys.argv[1]) if len(sys.argv) > 1 else runs.ROOT / "docs" / "results")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 //   bench_structure                                  one JSON object a line: {name, value, unit, reference,
 //   ratio,
 //                                                    ranks}; `ranks` counts threads, 1 and 2
+//   bench_structure once                             the same with one thread only (on a busy machine)
 //   bench_structure valve KIND N LAYERS [gamg]       one closed valve by Newton: JSON with unknowns, time,
 //   probes bench_structure calculix TYPE N LAYERS FILE      the same valve as CalculiX's input, TYPE C3D8,
 //   C3D10, C3D20 ...
@@ -52,17 +53,22 @@ void report(const std::string& name, double value, const char* unit, double refe
   std::fflush(stdout);
 }
 
-// Seconds of one call: the best of three runs of at least 0.3 s, so that a busy machine disturbs less.
+// Processor time of one thread, which other work on the machine hardly disturbs; wall time of two.
+double now() {
+  return omp_get_max_threads() == 1 ? processor() : wall();
+}
+
+// Seconds of one call: the best of three runs of at least 0.3 s.
 template <class Work>
 double seconds(const Work& work) {
   work();
   double best = 1e300;
   for (int repeat = 0; repeat < 3; ++repeat) {
-    const double start = wall();
+    const double start = now();
     int calls = 0;
     do work(), ++calls;
-    while (wall() - start < 0.3);
-    best = std::min(best, (wall() - start) / calls);
+    while (now() - start < 0.3);
+    best = std::min(best, (now() - start) / calls);
   }
   return best;
 }
@@ -223,7 +229,8 @@ void newton_rates(int threads) {
     const std::string what =
         "closed valve by Newton, " + name + ", " + std::to_string(run.unknowns) + " unknowns, ";
     report(what + "iterations", run.iterations, "iterations", 0, threads);
-    report(what + "time of one", run.wall_s / run.iterations, "s", 0, threads);
+    report(what + "time of one", (threads == 1 ? run.processor_s : run.wall_s) / run.iterations, "s", 0,
+           threads);
   }
 }
 
@@ -322,7 +329,7 @@ int main(int argc, char** argv) {
     } else if (mode == "calculix" && argc == 6) {
       write_calculix(argv[2], std::atoi(argv[3]), std::atoi(argv[4]), argv[5]);
     } else {
-      for (int threads : {1, 2}) {
+      for (int threads : mode == "once" ? std::vector<int>{1} : std::vector<int>{1, 2}) {
         omp_set_num_threads(threads);
         const double bytes_per_s = bandwidth();
         report("memory bandwidth, triad", 1e-9 * bytes_per_s, "GB/s", 0, threads);

@@ -105,21 +105,27 @@ def main():
     build = Path(folders[0]) if folders else ROOT / "build"
     program = str(build / "bin" / "bench_structure")
     reference = ours(program, *REFERENCE)
-    runs = [ours(program, *run) for run in OURS]
-    ccx = shutil.which("ccx")
-    if ccx:
-        runs += [theirs(program, ccx, *run) for run in THEIRS]
-    else:
-        print("CalculiX is not installed (apt-get install calculix-ccx): its half of the comparison is skipped")
     largest = max(math.dist(p, (0, 0, 0)) for p in reference["probes_mm"])
-    print("| program | element | n | unknowns | error % | iterations | processor s |\n|---|---|---|---|---|---|---|")
-    for run in runs:
+    runs = []
+
+    def note(run):
+        runs.append(run)
         if "failed" in run:
-            print(f"| {run['program']} | {run['element']} | {run['n']} | | | | no solution |")
-            continue
+            print(f"| {run['program']} | {run['element']} | {run['n']} | | | | no solution |", flush=True)
+            return
         run["error"] = max(math.dist(p, q) for p, q in zip(run["probes_mm"], reference["probes_mm"])) / largest
         print(f"| {run['program']} | {run['element']} | {run['n']} | {run['unknowns']} | {100 * run['error']:.2f} | "
-              f"{run['iterations']} | {run['processor_s']:.2f} |")
+              f"{run['iterations']} | {run['processor_s']:.2f} |", flush=True)
+
+    print("| program | element | n | unknowns | error % | iterations | processor s |\n|---|---|---|---|---|---|---|")
+    for run in OURS:
+        note(ours(program, *run))
+    ccx = shutil.which("ccx")
+    if ccx:
+        for run in THEIRS:
+            note(theirs(program, ccx, *run))
+    else:
+        print("CalculiX is not installed (apt-get install calculix-ccx): its half of the comparison is skipped")
     summary = []
     solved = [run for run in runs if "error" in run]
     print("\n| error % | valsalva, s | CalculiX, s | ratio |\n|---|---|---|---|")
