@@ -120,6 +120,7 @@ def write(rows, out):
     for axis, part, error, title in ((axes[0], "static", "tip_error", "static: tip displacement"),
                                      (axes[1], "static", "stress_error", "static: stress at a quarter length"),
                                      (axes[2], "dynamic", "tip_error", "dynamic: tip at 27 ms")):
+        axis.set_prop_cycle(color=plt.cm.tab20.colors)
         for kind in dict.fromkeys(row["kind"] for row in rows if row["part"] == part):
             line = [(row["processor_s"], row[error]) for row in rows
                     if row["part"] == part and row["kind"] == kind and row[error] not in ("", 0)]
