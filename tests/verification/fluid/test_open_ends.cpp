@@ -26,6 +26,7 @@ double rough(int d, const Vec3& x) {
 struct Shape {
   const char* name;
   double tilt, widening, bulge;  // mm a mm, mm a mm, mm
+  Wall wall = Wall::staircase;
   double distance(const Vec3& x) const {
     const double radius = 6 + widening * x[2] + bulge * std::exp(-x[2] * x[2] / 12);
     return std::hypot(x[0] - tilt * x[2], x[1] - 0.6 * tilt * x[2]) - radius;
@@ -36,6 +37,22 @@ void PrintTo(const Shape& shape, std::ostream* out) {
   *out << shape.name;
 }
 
+// Kinetic energy of the open faces: what an interpolated wall carries on beyond itself is no fluid.
+double open_energy(const Flow& flow) {
+  const Grid& grid = flow.grid();
+  double sum = 0;
+  for (int d = 0; d < 3; ++d) {
+    for (int k = 0; k < grid.cells[2] + (d == 2); ++k) {
+      for (int j = 0; j < grid.cells[1]; ++j) {
+        for (int i = 0; i < grid.cells[0]; ++i) {
+          if (flow.solids().owner(d, i, j, k) == 0) sum += std::pow(flow.velocity()[d](i, j, k), 2);
+        }
+      }
+    }
+  }
+  return 0.5 * density * std::pow(grid.h, 3) * sum;
+}
+
 class OpenEnds : public testing::TestWithParam<Shape> {};
 
 TEST_P(OpenEnds, GiveNoMoreEnergyThanPressureTimesFlow) {
@@ -43,7 +60,9 @@ TEST_P(OpenEnds, GiveNoMoreEnergyThanPressureTimesFlow) {
   grid.h = 0.8;
   grid.cells = {27, 27, 26};
   grid.origin = 0.5 * grid.h * Vec3(-27 + 0.54, -27 + 0.82, -26);
-  Flow flow(MPI_COMM_SELF, grid, {}, {});
+  FlowParameters parameters;
+  parameters.wall = GetParam().wall;
+  Flow flow(MPI_COMM_SELF, grid, {}, parameters);
   flow.solids().set_lumen([&](const Vec3& x) { return GetParam().distance(x); });
   flow.set_velocity(rough);
   const double amplitude = 4000, period = 0.05;
@@ -57,11 +76,12 @@ TEST_P(OpenEnds, GiveNoMoreEnergyThanPressureTimesFlow) {
     time += dt;
     const double rate = flow.flow_through(End::low);
     given += 0.5 * (before + rate) * pressure * dt;
-    most = std::max(most, report.kinetic_energy);
+    const double energy = parameters.wall == Wall::interpolated ? open_energy(flow) : report.kinetic_energy;
+    most = std::max(most, energy);
     fastest = std::max(fastest, report.max_speed);
     forward = std::max(forward, rate);
     backward = std::min(backward, rate);
-    ASSERT_LT(report.kinetic_energy, given + 0.01 * most) << "t = " << time;
+    ASSERT_LT(energy, given + 0.01 * most) << "t = " << time;
     dt = std::min({5e-5, 1.3 * dt, 0.35 * grid.h / report.max_speed});
   }
   const double scale = std::sqrt(2 * amplitude / density);  // all pressure turned into speed
@@ -75,7 +95,10 @@ TEST_P(OpenEnds, GiveNoMoreEnergyThanPressureTimesFlow) {
 INSTANTIATE_TEST_SUITE_P(Vessels, OpenEnds,
                          testing::Values(Shape{"straight", 0, 0, 0}, Shape{"tilted", 0.3, 0, 0},
                                          Shape{"widening", 0, 0.1, 0}, Shape{"narrowing", 0, -0.1, 0},
-                                         Shape{"bulge", 0, 0, 2}),
+                                         Shape{"bulge", 0, 0, 2},
+                                         Shape{"tilted_interpolated", 0.3, 0, 0, Wall::interpolated},
+                                         Shape{"widening_interpolated", 0, 0.1, 0, Wall::interpolated},
+                                         Shape{"bulge_interpolated", 0, 0, 2, Wall::interpolated}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // A straight pipe of radius 5 mm on a grid of cells h; periodic in z, or open at both ends.

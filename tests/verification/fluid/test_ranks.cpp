@@ -22,6 +22,7 @@ struct Scene {
   bool tube;
   int order = 2;
   bool thinning = false;  // Carreau-Yasuda blood and a subgrid model
+  bool smooth = false;    // interpolated wall of a tilted tube
 };
 
 void PrintTo(const Scene& scene, std::ostream* out) {
@@ -38,10 +39,12 @@ std::unique_ptr<Flow> make(MPI_Comm comm, const Scene& scene) {
   FlowParameters parameters;
   parameters.order = scene.order;
   if (scene.order == 4) parameters.convection = Convection::centred4;
+  if (scene.smooth) parameters.wall = Wall::interpolated;
   if (scene.thinning) parameters.extra_viscosity = {.carreau_yasuda = CarreauYasuda{}, .vreman = 0.07};
   auto flow = std::make_unique<Flow>(comm, grid, boundaries, parameters);
   if (scene.tube) {
-    flow->solids().set_lumen([](const Vec3& x) { return std::hypot(x[0], x[1]) - 4; });
+    const double tilt = scene.smooth ? 0.07 : 0;
+    flow->solids().set_lumen([=](const Vec3& x) { return std::hypot(x[0] - tilt * x[2], x[1]) - 4; });
     const int body = flow->solids().add_body("strut");
     flow->solids().mark_segments(body, {Vec3(-4, 0, -1), Vec3(4, 1, 1)}, {{0, 1}}, 0.5);
   }
@@ -174,6 +177,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Scene{"box", Side::wall, Side::wall, Side::wall, Side::wall, false},
                     Scene{"periodic", Side::periodic, Side::periodic, Side::periodic, Side::periodic, false},
                     Scene{"thinning", Side::slip, Side::wall, Side::inflow, Side::open, true, 2, true},
+                    Scene{"smooth", Side::slip, Side::slip, Side::open, Side::open, true, 2, false, true},
                     Scene{"order4", Side::periodic, Side::periodic, Side::periodic, Side::periodic, false, 4},
                     Scene{"pipe", Side::slip, Side::slip, Side::periodic, Side::periodic, true}),
     [](const auto& info) { return std::string(info.param.name); });
