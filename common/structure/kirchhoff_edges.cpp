@@ -128,7 +128,7 @@ std::vector<ShellEdges::Term> ShellEdges::weights(const Points& x, const ShellEd
       const Vec3 r = (x[around[k]] - middle) / h;
       const double s = r.dot(along), y = r.dot(across);
       data.col(k) << 1, s, y, s * s, s * y, y * y;
-      trust[k] = 1 / ((r.squaredNorm() + 0.05) * (r.squaredNorm() + 0.05));
+      trust[k] = std::pow(r.squaredNorm() + 0.05, -4);
     }
     // With too few nodes for a quadratic (a strip of one row), at last a linear function.
     const int size = wider < 3 ? 6 : 3;

@@ -6,7 +6,7 @@
 // by:
 //   inner, free, hinged   the weights are exact for quadratic functions of the place in that plane, of least
 //                         norm among the nodes of the edge's triangles and their neighbours (moving least
-//                         squares, Lancaster and Salkauskas 1981, with weights 1/(d^2 + h^2/20)^2)
+//                         squares, Lancaster and Salkauskas 1981, with weights 1/(d^2 + h^2/20)^4)
 //   symmetry              along the plane's normal: d = m (m . sum)
 //   clamped               R d0, as the clamp has turned
 // One vector an edge, seen by both triangles: hence the patch test on any mesh (kirchhoff_shell.hpp).

@@ -15,10 +15,13 @@
 // measured first: order 3 on regular meshes, but no convergence on unstructured ones
 // (docs/verification/shells.md).
 //
-// Nodes are points of the surface. Forces reach the nodes of the neighbouring triangles and of theirs (12 on
-// regular meshes, 18 for a triangle with all three edge vectors on unstructured ones). Limits: no transverse
-// shear; the mesh finer than the radius of curvature; no creases inside the surface (an angle of the
-// reference shape stays, and bends elastically). Lengths mm, stress Pa, energy nJ, force uN.
+// Nodes are points of the surface. A triangle's energy depends on 12 nodes at most: its own, its neighbours'
+// and their neighbours'.
+//
+// Limits: no transverse shear; the mesh finer than the radius of curvature; no creases inside the surface (an
+// angle of the reference shape stays, and bends elastically); the angle between neighbouring triangles well
+// below one radian, in which the error is quadratic.
+// Lengths mm, stress Pa, energy nJ, force uN.
 #pragma once
 
 #include <functional>
