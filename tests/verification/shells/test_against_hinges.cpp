@@ -15,7 +15,7 @@ namespace {
 
 constexpr double young = 1e6, thickness = 0.01;
 
-// Largest deflection of the hinged unit square under D q = 4 pi^4 sin sin, which is 1.
+// Error of the deflection of the hinged unit square under q = 4 pi^4 D sin sin, which is sin sin.
 double hinge_plate(Pattern pattern, int n) {
   const test::SheetMesh sheet = test::sheet(1, 1, n, n, pattern);
   // Poisson's ratio 1/2, that of the incompressible membrane.
@@ -69,6 +69,7 @@ TEST(AgainstHinges, HingesDoNotConvergeOnEveryMesh) {
   EXPECT_GT(hinge_plate(Pattern::one_way, 32), 0.05);  // if this fails, hinges have become better: say so
 }
 
+// Prints only: time is not asserted.
 TEST(AgainstHinges, CostOfForcesAndTangent) {
   test::SheetMesh sheet = test::sheet(20, 20, 56, 56, Pattern::unstructured);
   ShellMesh mesh = test::shell_mesh(
@@ -97,7 +98,6 @@ TEST(AgainstHinges, CostOfForcesAndTangent) {
     const KirchhoffShell shell(mesh, std::move(section));
     const double a = forces(shell), b = tangent(shell);
     std::printf("| %s | %.2f | %.2f | %.1f | %.2f |\n", name, a, a / base, b, b / base_tangent);
-    EXPECT_GT(a, 0);
   };
   row("Koiter", koiter_section(2e5, 0.5));
   row("law, 2 layers", law_section(law, 2));
