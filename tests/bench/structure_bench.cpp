@@ -169,7 +169,7 @@ struct SheetScene {
 template <class Scene>
 void explicit_rate(const char* what, Scene& scene, double bytes_per_step, double bytes_per_s, int threads) {
   IntegratorSettings settings;
-  settings.step_s = 1e-8;  // below the limit of every mesh here: the speed of a step does not depend on it
+  settings.step_s = 1e-10;  // below the limit of every mesh here: the speed of a step does not depend on it
   settings.mass_scaling = false;
   Integrator integrator(scene.system, scene.terms, settings);
   const double step = seconds([&] { integrator.step(); });
