@@ -9,6 +9,7 @@
 
 #include "core/errors.hpp"
 #include "fluid/flow.hpp"
+#include "travelling_abc.hpp"
 
 using namespace valsalva;
 using namespace valsalva::fluid;
@@ -18,11 +19,7 @@ namespace {
 constexpr double pi = std::numbers::pi, nu = 1e-3;
 
 double exact(int d, const Vec3& x, double t) {
-  const double a = std::exp(-4 * pi * pi * nu * t), k = 2 * pi;
-  const double X = k * (x[0] - t), Y = k * (x[1] - t), Z = k * (x[2] - t);
-  if (d == 0) return 1 + a * (std::cos(Y) + std::sin(Z));
-  if (d == 1) return 1 + a * (std::sin(X) + std::cos(Z));
-  return 1 + a * (std::cos(X) + std::sin(Y));
+  return test::travelling_abc(d, x, t, nu);
 }
 
 std::unique_ptr<Flow> make(int n, Convection convection, int order = 4, double viscosity = nu) {
