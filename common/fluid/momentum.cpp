@@ -7,26 +7,13 @@
 
 namespace valsalva::fluid {
 
-namespace {
-
-// Flux of q along the direction with stride s, through the side between q[-s] and q[0]; a: the velocity along
-// that direction, at two places a stride sd apart.
-inline double flux(double c1, double c2, double s12, const double* q, std::ptrdiff_t s, const double* a,
-                   std::ptrdiff_t sd) {
-  const double speed = 0.5 * (a[0] + a[-sd]);
-  const double near = q[-s] + q[0], far = q[-2 * s] + q[s];
-  const double jump = 3 * (q[-s] - q[0]) + (q[s] - q[-2 * s]);
-  return speed * (c1 * near - c2 * far) + s12 * std::abs(speed) * jump;
-}
-
-}  // namespace
-
 Convection convection_from(const std::string& name) {
   if (name == "upwind3") return Convection::upwind3;
   if (name == "centred4") return Convection::centred4;
   if (name == "centred2") return Convection::centred2;
+  if (name == "weno5") return Convection::weno5;
   if (name == "conserving4") return Convection::conserving4;
-  throw InputError("convection '{}'; expected upwind3, centred4, centred2 or conserving4", name);
+  throw InputError("convection '{}'; expected upwind3, centred4, centred2, weno5 or conserving4", name);
 }
 
 Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection scheme,
@@ -36,17 +23,18 @@ Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection sc
                  : scheme == Convection::conserving4)
     throw InputError(
         "fluid: convection and order do not go together; order 4 has centred4 and conserving4, order 2 "
-        "upwind3, centred4 and centred2");
+        "upwind3, centred4, centred2 and weno5");
   switch (scheme) {
     case Convection::upwind3:
-      scheme_ = {7.0 / 12, 1.0 / 12, 1.0 / 12};
+    case Convection::weno5:
+      linear_ = {7.0 / 12, 1.0 / 12, 1.0 / 12};
       break;
     case Convection::centred4:
-      scheme_ = {7.0 / 12, 1.0 / 12, 0};
+      linear_ = {7.0 / 12, 1.0 / 12, 0};
       break;
     case Convection::conserving4:
     case Convection::centred2:
-      scheme_ = {0.5, 0, 0};
+      linear_ = {0.5, 0, 0};
       break;
   }
   const int nx = slab.grid.cells[0];
@@ -55,8 +43,8 @@ Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection sc
   flux_y_.resize(nx);
 }
 
-void Momentum::start_plane_fluxes(const FaceField& velocity) {
-  const auto [c1, c2, s12] = scheme_;
+template <class Flux>
+void Momentum::start_plane_fluxes(const Flux& flux, const FaceField& velocity) {
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const std::array<std::ptrdiff_t, 3> stride{1, slab_.stride_y, slab_.stride_z};
   for (int d = 0; d < 3; ++d) {
@@ -64,15 +52,14 @@ void Momentum::start_plane_fluxes(const FaceField& velocity) {
       const double* q = velocity[d].row(j, 0);
       const double* w = velocity[2].row(j, 0);
       double* fz = flux_z_[d].data() + static_cast<std::size_t>(j) * nx;
-      for (int i = 0; i < nx; ++i) fz[i] = flux(c1, c2, s12, q + i, stride[2], w + i, stride[d]);
+      for (int i = 0; i < nx; ++i) fz[i] = flux(q + i, stride[2], w + i, stride[d]);
     }
   }
 }
 
-template <bool open_end>
-void Momentum::plane(int d, int k, const FaceField& velocity, const Advance& step, FaceField& rate,
-                     FaceField& next) {
-  const auto [c1, c2, s12] = scheme_;
+template <bool open_end, class Flux>
+void Momentum::plane(const Flux& flux, int d, int k, const FaceField& velocity, const Advance& step,
+                     FaceField& rate, FaceField& next) {
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
   const std::ptrdiff_t sd = d == 0 ? 1 : d == 1 ? sy : sz;
@@ -84,7 +71,7 @@ void Momentum::plane(int d, int k, const FaceField& velocity, const Advance& ste
   double* __restrict fy = flux_y_.data();
 
   const double* v0 = velocity[1].row(0, k);
-  for (int i = 0; i < nx; ++i) fy[i] = flux(c1, c2, s12, velocity[d].row(0, k) + i, sy, v0 + i, sd);
+  for (int i = 0; i < nx; ++i) fy[i] = flux(velocity[d].row(0, k) + i, sy, v0 + i, sd);
 
   for (int j = 0; j < ny; ++j) {
     const double* q = velocity[d].row(j, k);
@@ -98,11 +85,11 @@ void Momentum::plane(int d, int k, const FaceField& velocity, const Advance& ste
     double* __restrict out = next[d].row(j, k);
     [[maybe_unused]] const double outward = k == 0 ? -1 : 1;
 #pragma omp simd
-    for (int i = 0; i <= nx; ++i) fx[i] = flux(c1, c2, s12, q + i, 1, u + i, sd);
+    for (int i = 0; i <= nx; ++i) fx[i] = flux(q + i, 1, u + i, sd);
 #pragma omp simd
     for (int i = 0; i < nx; ++i) {
-      const double above_y = flux(c1, c2, s12, q + i + sy, sy, v + i, sd);
-      const double above_z = flux(c1, c2, s12, q + i + sz, sz, w + i, sd);
+      const double above_y = flux(q + i + sy, sy, v + i, sd);
+      const double above_z = flux(q + i + sz, sz, w + i, sd);
       const double divergence = (fx[i + 1] - fx[i]) + (above_y - fy[i]) + (above_z - fz[i]);
       const double laplacian =
           (q[i + 1] + q[i - 1]) + (q[i + sy] + q[i - sy]) + (q[i + sz] + q[i - sz]) - 6 * q[i];
@@ -132,22 +119,33 @@ void Momentum::hold_sides(int k, FaceField& rate, FaceField& next) const {
 }
 
 void Momentum::advance(const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next) {
-  if (order_ == 4) return advance_fourth_order(velocity, step, rate, next);
-  start_plane_fluxes(velocity);
+  if (order_ == 4) {
+    advance_fourth_order(velocity, step, rate, next);
+  } else if (convection_ == Convection::weno5) {
+    advance_second_order(WenoFlux{}, velocity, step, rate, next);
+  } else {
+    advance_second_order(linear_, velocity, step, rate, next);
+  }
+}
+
+template <class Flux>
+void Momentum::advance_second_order(const Flux& flux, const FaceField& velocity, const Advance& step,
+                                    FaceField& rate, FaceField& next) {
+  start_plane_fluxes(flux, velocity);
   const auto is_open = [&](int k) {
     return !slab_.periodic_z && ((k == 0 && slab_.is_lowest() && boundaries_.end(End::low) == Side::open) ||
                                  (k == slab_.planes && boundaries_.end(End::high) == Side::open));
   };
   for (int k = 0; k < slab_.w_planes(); ++k) {
     if (k < slab_.planes) {
-      plane<false>(0, k, velocity, step, rate, next);
-      plane<false>(1, k, velocity, step, rate, next);
+      plane<false>(flux, 0, k, velocity, step, rate, next);
+      plane<false>(flux, 1, k, velocity, step, rate, next);
       hold_sides(k, rate, next);
     }
     if (is_open(k)) {
-      plane<true>(2, k, velocity, step, rate, next);
+      plane<true>(linear_, 2, k, velocity, step, rate, next);
     } else {
-      plane<false>(2, k, velocity, step, rate, next);
+      plane<false>(flux, 2, k, velocity, step, rate, next);
     }
   }
   // Prescribed faces of walls, slip sides and inflow keep their velocity.

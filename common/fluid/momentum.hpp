@@ -5,7 +5,10 @@
 //
 //   upwind3    c1 = 7/12, c2 = 1/12, s = 1/12   third-order upwind-biased face value (kappa = 1/3; van Leer
 //   1985) centred4   c1 = 7/12, c2 = 1/12, s = 0      fourth-order face value, no dissipation centred2   c1 =
-//   1/2,  c2 = 0,    s = 0      second order, conserves kinetic energy
+//   1/2,  c2 = 0,    s = 0      second order, conserves kinetic energy weno5      F = a q*, q* of fifth order
+//   where q is smooth, without new extremes beside jumps
+//              (convective_flux.hpp); on the faces of open ends, which have no third neighbour outside,
+//              upwind3
 //
 // The advecting velocities are two-point means, so the scheme as a whole is second order.
 //
@@ -26,11 +29,12 @@
 #include <vector>
 
 #include "fluid/boundary.hpp"
+#include "fluid/convective_flux.hpp"
 #include "fluid/grid.hpp"
 
 namespace valsalva::fluid {
 
-enum class Convection { upwind3, centred4, centred2, conserving4 };
+enum class Convection { upwind3, centred4, centred2, weno5, conserving4 };
 
 /// InputError for an unknown name.
 Convection convection_from(const std::string& name);
@@ -53,12 +57,14 @@ class Momentum {
   void advance(const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next);
 
  private:
-  struct Coefficients {
-    double c1, c2, s;
-  };
-  template <bool open_end>
-  void plane(int d, int k, const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next);
-  void start_plane_fluxes(const FaceField& velocity);
+  template <bool open_end, class Flux>
+  void plane(const Flux& flux, int d, int k, const FaceField& velocity, const Advance& step, FaceField& rate,
+             FaceField& next);
+  template <class Flux>
+  void start_plane_fluxes(const Flux& flux, const FaceField& velocity);
+  template <class Flux>
+  void advance_second_order(const Flux& flux, const FaceField& velocity, const Advance& step, FaceField& rate,
+                            FaceField& next);
   void hold_sides(int k, FaceField& rate, FaceField& next) const;
   template <class Flux>
   void advance_fourth_order(const FaceField& velocity, const Advance& step, FaceField& rate,
@@ -69,7 +75,7 @@ class Momentum {
   const Slab& slab_;
   const Boundaries& boundaries_;
   Convection convection_;
-  Coefficients scheme_;
+  LinearFlux linear_;  ///< of the scheme; of weno5 that of the open ends
   double nu_;
   int order_;
   std::array<std::vector<double>, 3> flux_z_;  ///< of each component, through the low side of the next plane

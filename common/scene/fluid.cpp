@@ -23,8 +23,9 @@ void declare_fluid(Schema& schema) {
   schema.real("fluid.vreman_constant", 0.07, {0, 1},
               "c of Vreman's model; 2.5 times Smagorinsky's constant squared");
   schema.choice(
-      "fluid.convection", "upwind3", {"upwind3", "centred4", "centred2"},
-      "Third-order upwind-biased convection, or fourth- or second-order centred without dissipation");
+      "fluid.convection", "upwind3", {"upwind3", "centred4", "centred2", "weno5"},
+      "Third-order upwind-biased convection; fourth- or second-order centred without dissipation; or limited "
+      "(fifth-order WENO), for jets that the grid does not resolve");
   schema.real(
       "fluid.penalisation_s", 1e-8, {1e-12, 1e-5},
       "Time constant of solid faces; a solid lets velocity penalisation/density x pressure gradient through");

@@ -110,7 +110,7 @@ TEST_P(TaylorGreen, DivergenceStaysAtRoundOff) {
   EXPECT_LT(run(32, 0.1, 40, convection_from(GetParam()))->divergence(), 1e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schemes, TaylorGreen, testing::Values("upwind3", "centred4", "centred2"),
+INSTANTIATE_TEST_SUITE_P(Schemes, TaylorGreen, testing::Values("upwind3", "centred4", "centred2", "weno5"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Energy, CentredSecondOrderConvectionConservesIt) {
