@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/log.hpp"
 #include "core/provenance.hpp"
+#include "state/kept.hpp"
 
 namespace valsalva::state {
 
@@ -28,6 +29,18 @@ std::filesystem::path save(const StageContext& context, const State& state) {
   }
   MPI_Barrier(context.comm);
   return path;
+}
+
+void keep(const StageContext& context, const State& state) {
+  // First the name that stays: whoever continues from this state need not ask whether it was kept.
+  if (mpi::rank(context.comm) == 0) write(kept_path(context.run.path(), state.step), state);
+  save(context, state);
+}
+
+void drop_kept(const StageContext& context) {
+  if (mpi::rank(context.comm) == 0)
+    for (const auto& [index, path] : kept_states(context.run.path())) std::filesystem::remove(path);
+  MPI_Barrier(context.comm);
 }
 
 void stop(const StageContext& context, const State& state) {

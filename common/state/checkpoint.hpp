@@ -4,6 +4,7 @@
 //   state::CheckpointClock clock(context);
 //   while (...) {
 //     step();
+//     if (of lasting interest) state::keep(context, snapshot());
 //     if (clock.due(context.comm)) state::save(context, snapshot());
 //     if (interrupted()) state::stop(context, snapshot()); // writes, throws Interrupted
 //   }
@@ -23,6 +24,13 @@ State begin(const StageContext& context, double time_s, std::int64_t step);
 
 /// Writes state_<step>.h5 on rank 0, removes all but the last two, refreshes the views. Collective.
 std::filesystem::path save(const StageContext& context, const State& state);
+
+/// save, and the state stays when later ones come: it is kept_<step>.h5 too, and in the series of views.
+/// Collective.
+void keep(const StageContext& context, const State& state);
+
+/// Removes what an earlier run in this folder has kept. Collective.
+void drop_kept(const StageContext& context);
 
 /// save, then Interrupted that names the file and the command to continue. Collective.
 [[noreturn]] void stop(const StageContext& context, const State& state);

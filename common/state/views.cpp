@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "core/run_folder.hpp"
 #include "state/hdf5.hpp"
+#include "state/kept.hpp"
 #include "state/state.hpp"
 
 namespace valsalva::state {
@@ -46,6 +47,8 @@ Described describe(const fs::path& state_file) {
 
 void write_views(const fs::path& folder, const fs::path& state_file) {
   const Described newest = describe(state_file);
+  std::map<long, fs::path> states = kept_states(folder);
+  for (const fs::path& state : RunFolder(folder).states()) states.emplace(RunFolder::index_of(state), state);
   for (const std::string& body : newest.bodies) {
     nlohmann::json series;
     series["file-series-version"] = "1.0";
@@ -55,11 +58,11 @@ void write_views(const fs::path& folder, const fs::path& state_file) {
       const std::string name = entry.path().filename().string();
       if (name.starts_with("view_" + body + "_") && name.ends_with(".hdf")) fs::remove(entry.path());
     }
-    for (const fs::path& state : RunFolder(folder).states()) {
+    for (const auto& [index, state] : states) {
       const Described described = describe(state);
       if (std::find(described.bodies.begin(), described.bodies.end(), body) == described.bodies.end())
         continue;
-      const std::string name = fmt::format("view_{}_{:06d}.hdf", body, RunFolder::index_of(state));
+      const std::string name = fmt::format("view_{}_{:06d}.hdf", body, index);
       write_link(folder / name, state.filename().string(), "/meshes/" + body);
       series["files"].push_back({{"name", name}, {"time", described.time_s}});
     }

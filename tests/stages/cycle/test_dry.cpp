@@ -138,6 +138,42 @@ TEST_F(DryCycle, ContinuesBitForBit) {
   }
 }
 
+TEST_F(DryCycle, KeepsTheViewsOfTheTimesItIsToldToAndARunAfreshDropsThem) {
+  const std::string wanted = "--set output.view_times_s=[0.003,0,0.00101]";
+  const auto times = [&](const char* out) {
+    std::vector<double> found;
+    const auto series = nlohmann::json::parse(std::ifstream(in(out, "view_sheet.hdf.series")));
+    for (const auto& entry : series["files"]) {
+      EXPECT_TRUE(fs::exists(in(out, entry["name"].get<std::string>())));
+      found.push_back(entry["time"]);
+    }
+    return found;
+  };
+  ASSERT_EQ(run("whole", wanted).code, 0);
+  const std::vector<double> found = times("whole");
+  ASSERT_GE(found.size(), 4u) << "three that were asked for, and the last";
+  EXPECT_EQ(found[0], 0);
+  EXPECT_GE(found[1], 0.00101);
+  EXPECT_LT(found[1], 0.00101 + 2 * 0.005 / 100) << "a hundred rows";
+  EXPECT_GE(found[2], 0.003);
+  EXPECT_NEAR(found.back(), 0.005, 1e-12);
+  int kept = 0;
+  for (const auto& entry : fs::directory_iterator(in("whole", "")))
+    kept += entry.path().filename().string().starts_with("kept_");
+  EXPECT_EQ(kept, 3);
+
+  const int steps = static_cast<int>(summary("whole")["steps"].get<long>());
+  ASSERT_EQ(run("parts", wanted + fmt::format(" --steps {}", steps / 2)).code, 0);
+  ASSERT_EQ(run("parts", wanted + " --resume").code, 0);
+  for (const auto& entry : fs::directory_iterator(in("whole", "")))
+    if (const std::string name = entry.path().filename(); name.starts_with("kept_")) {
+      const auto one = state::read(entry.path(), "cycle"), other = state::read(in("parts", name), "cycle");
+      EXPECT_EQ(one.mesh("sheet").points, other.mesh("sheet").points) << name;
+    }
+  ASSERT_EQ(run("whole").code, 0);
+  for (double t : times("whole")) EXPECT_GT(t, 0.003);
+}
+
 // Killed by SIGKILL at any moment and resumed until it is done: the same final state.
 TEST_F(DryCycle, KilledAndResumedEndsInTheSameState) {
   const std::string options = "--set dynamics.end_s=0.2 --set output.checkpoint_s=0.05";
