@@ -17,7 +17,7 @@ namespace valsalva::contact {
 inline std::shared_ptr<const materials::SolidLaw> hookean(double young, double nu) {
   const double mu = young / (2 * (1 + nu)), lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
   return std::make_shared<materials::SolidLaw>(std::make_shared<materials::StVenantKirchhoff>(lambda, mu),
-                                               materials::Volumetric{});
+                                               materials::Volumetric{}, materials::Split::full);
 }
 
 /// Two triangles a quadrilateral.

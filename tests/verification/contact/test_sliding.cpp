@@ -30,8 +30,7 @@ void settle(structure::Integrator& integrator) {
 
 }  // namespace
 
-// Open: docs/verification/contact.md.
-TEST(SlidingBlock, DISABLED_StaysBelowTheAngleOfFriction) {
+TEST(SlidingBlock, StaysBelowTheAngleOfFriction) {
   for (double part : {0.5, 0.9}) {
     BlockScene scene = resting_block();
     const double angle = std::atan(part * mu);
