@@ -40,7 +40,10 @@ class DryRun {
         scene_(assembly::compose(context.scene, prestress_.reference)),
         probes_(context.scene, scene_),
         march_(assembly::make_march(context.scene, scene_)),
-        history_(new_history(probes_)) {}
+        history_(new_history(probes_)),
+        view_times_(context.scene.reals("output.view_times_s")) {
+    std::sort(view_times_.begin(), view_times_.end());
+  }
 
   void go() {
     if (scene_.system->nodes() >= small_scene) omp_set_num_threads(threads_);
@@ -49,7 +52,7 @@ class DryRun {
     if (before_)
       load(*before_);
     else
-      add_row();
+      begin();
     good_ = march_->save();
     const long first = march_->steps();
     Progress progress("cycle", scene_.end_s, context_.speaks);
@@ -61,6 +64,7 @@ class DryRun {
         if (march_->row_due()) {
           add_row();
           good_ = march_->save();
+          keep_views();
         }
         progress.update(time_s(), fmt::format("t = {:.4g} s, kinetic {:.3g} nJ, stored {:.3g} nJ", time_s(),
                                               march_->kinetic_nJ(), march_->stored_nJ()));
@@ -98,6 +102,20 @@ class DryRun {
   }
 
   double time_s() const { return scene_.system->state.time_s; }
+
+  void begin() {
+    state::drop_kept(context_);
+    add_row();
+    keep_views();
+  }
+
+  /// When one of the times has been reached.
+  void keep_views() {
+    const auto next = std::upper_bound(view_times_.begin(), view_times_.end(), time_s());
+    if (next == view_times_.begin()) return;
+    view_times_.erase(view_times_.begin(), next);
+    state::keep(context_, now());
+  }
 
   void say_scene() const {
     for (const assembly::BuiltBody& body : scene_.bodies)
@@ -140,6 +158,9 @@ class DryRun {
   void load(const state::State& s) {
     march_->restore(snapshot_of(s));
     history_.restore(s.array("history").doubles("history"));
+    // What was reached before has been kept.
+    view_times_.erase(view_times_.begin(),
+                      std::upper_bound(view_times_.begin(), view_times_.end(), time_s()));
     log::info("continued from step {} at t = {:.6g} s", march_->steps(), time_s());
   }
 
@@ -188,6 +209,7 @@ class DryRun {
   assembly::Probes probes_;
   std::unique_ptr<assembly::March> march_;
   History history_;
+  std::vector<double> view_times_;  // those still to come
   structure::Snapshot good_;
 };
 
@@ -228,8 +250,12 @@ Estimate estimate_dry(const Case& scene) {
   const double steps = static_cast<double>(scene.integer("dynamics.load_steps"));
   const double most = given > 0 ? given : 1e-3 * end_s;
   double evaluations = 360 * steps;  // a Newton iteration costs about 60 of them, and there are about 6
-  if (solver == "explicit")
-    evaluations = end_s / std::min(most, scene.real("dynamics.safety") * assembly::stable_step_s(built));
+  if (solver == "explicit") {
+    const double stable = scene.real("dynamics.safety") * assembly::stable_step_s(built);
+    const bool raised =
+        scene.boolean("dynamics.mass_scaling") && given > 0;  // the step is kept, masses follow
+    evaluations = end_s / (raised ? given : std::min(most, stable));
+  }
   if (solver == "quasi_static") evaluations = 3e4 * steps;
   if (solver == "implicit") evaluations = 360 * end_s / (given > 0 ? given : 0.01 * end_s);
   if (assembly::wants_prestress(scene)) evaluations *= 10;
