@@ -14,41 +14,69 @@ constexpr double smallest_cut = 0.1;
 
 }  // namespace
 
-ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> shell,
+ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedBody> body,
                            const ImmersedFlowSettings& settings)
     : flow_(flow),
-      shell_(std::move(shell)),
+      body_(std::move(body)),
+      shell_(dynamic_cast<ImmersedShell*>(body_.get())),
       settings_(settings),
-      transfer_(flow.slab(), settings.kernel),
-      power_(shell_ ? shell_->x().size() : 0),
-      last_velocity_(shell_ ? shell_->x().size() : 0, Vec3::Zero()),
+      transfer_(
+          flow.slab(), settings.kernel,
+          {flow.boundaries().periodic(0), flow.boundaries().periodic(1), flow.boundaries().periodic(2)}),
+      power_(body_ ? body_->unknowns() : 0),
+      last_velocity_(body_ ? body_->unknowns() : 0, Vec3::Zero()),
       change_(last_velocity_),
-      probed_x_(shell_ ? shell_->x() : Points{}),
+      probed_x_(body_ ? body_->x() : Points{}),
       scratch_(flow.slab()) {}
+
+void ImmersedFlow::locate() {
+  transfer_.locate(body_->coupling_points());
+}
+
+void ImmersedFlow::spread(const Points& force, fluid::FaceField& density) {
+  if (const Sampling* sampling = body_->sampling()) {
+    sampling->to_points(force, at_points_);
+    transfer_.spread(at_points_, density);
+  } else {
+    transfer_.spread(force, density);
+  }
+}
+
+void ImmersedFlow::interpolate(const fluid::FaceField& velocity, Points& out) {
+  if (const Sampling* sampling = body_->sampling()) {
+    transfer_.interpolate(velocity, at_points_);
+    sampling->to_nodes(at_points_, out);
+  } else {
+    transfer_.interpolate(velocity, out);
+  }
+}
 
 void ImmersedFlow::probe() {
   probed_ = steps_;
-  probed_x_ = shell_->x();
-  shell_->update_tangent();
+  probed_x_ = body_->x();
+  body_->update_tangent();
   const double per_density = 1 / flow_.parameters().density;
-  const Operator stiffness = [&](const Points& y, Points& f) { shell_->tangent_product(y, f); };
+  const std::vector<double> own = body_->own_masses();
+  const Operator stiffness = [&](const Points& y, Points& f) { body_->tangent_product(y, f); };
   const Operator mobility = [&](const Points& f, Points& v) {
     scratch_.fill(0);
-    transfer_.spread(f, scratch_);
-    transfer_.interpolate(scratch_, v);
+    spread(f, scratch_);
+    interpolate(scratch_, v);
     for (Vec3& each : v) each *= per_density;
+    for (std::size_t i = 0; i < own.size(); ++i) v.push_back(f[f.size() - own.size() + i] / own[i]);
   };
   power_.run(stiffness, mobility, steps_ == 0 ? settings_.first_iterations : settings_.probe_iterations);
   if (steps_ > 0) power_.look_along(change_, stiffness, mobility, settings_.look_iterations);
 }
 
 double ImmersedFlow::plan(double at_most) {
-  if (shell_) {
-    transfer_.locate(shell_->coupling_points());
-    const ImmersedShell::EdgeStretch stretch = shell_->edge_stretch(probed_x_);
+  if (body_) {
+    locate();
+    const EdgeStretch stretch = body_->edge_stretch(probed_x_);
     if (stretch.largest > settings_.largest_stretch)
-      throw NumericalFailure("coupling: a leaflet edge is {:.3g} times as long as in its stress-free shape",
-                             stretch.largest);
+      throw NumericalFailure(
+          "coupling: an edge of the structure is {:.3g} times as long as in its stress-free shape",
+          stretch.largest);
     if (steps_ == 0 || steps_ - probed_ >= settings_.probe_interval ||
         stretch.change > settings_.probe_strain)
       probe();
@@ -56,7 +84,7 @@ double ImmersedFlow::plan(double at_most) {
   StepLimits limits = settings_.limits;
   limits.safety *= caution_;
   limits.cfl *= caution_;
-  const double critical = shell_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
+  const double critical = body_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
   limits.cfl *= planned_share;
   return std::min(at_most, next_step(limits, critical, max_speed_, flow_.grid().h, last_dt_));
 }
@@ -65,9 +93,10 @@ ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double 
   ImmersedStep done;
   done.dt_s = plan(at_most);
   flow_.clear_force();
-  if (shell_) {
-    shell_->forces(force_);
-    transfer_.spread(force_, flow_.force());
+  if (body_) {
+    body_->begin_step(done.dt_s);
+    body_->forces(force_);
+    spread(force_, flow_.force());
   }
   const double limit = settings_.limits.cfl * caution_;
   for (;; ++done.repeats) {
@@ -82,12 +111,12 @@ ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double 
           "coupling: the time step fell to {:.3g} s, and still the fluid would move {:.3g} cells in it",
           done.dt_s, done.fluid.cfl);
   }
-  done.critical_s = shell_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
-  if (shell_) {
-    transfer_.interpolate(flow_.velocity(), velocity_);
+  done.critical_s = body_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
+  if (body_) {
+    interpolate(flow_.velocity(), velocity_);
+    body_->move(velocity_, done.dt_s);
     for (std::size_t a = 0; a < velocity_.size(); ++a) change_[a] = velocity_[a] - last_velocity_[a];
     last_velocity_ = velocity_;
-    shell_->move(velocity_, done.dt_s);
   }
   max_speed_ = done.fluid.max_speed;
   last_dt_ = done.dt_s;
@@ -97,8 +126,9 @@ ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double 
 
 std::map<std::string, state::Array> ImmersedFlow::save() const {
   std::map<std::string, state::Array> arrays = flow_.save();
-  if (shell_) {
-    arrays["coupling/points"] = state::Array::of(shell_->x());
+  if (body_) {
+    arrays.merge(body_->save());
+    arrays["coupling/points"] = state::Array::of(body_->x());
     arrays["coupling/direction"] = state::Array::of(power_.direction());
     arrays["coupling/velocity"] = state::Array::of(last_velocity_);
     arrays["coupling/change"] = state::Array::of(change_);
@@ -120,17 +150,21 @@ void ImmersedFlow::load(const state::State& state) {
   max_speed_ = history[2];
   caution_ = history[3];
   probed_ = static_cast<long>(history[5]);
-  if (!shell_) return;
-  Points x = state.array("coupling/points").points("coupling/points");
-  Points direction = state.array("coupling/direction").points("coupling/direction");
-  last_velocity_ = state.array("coupling/velocity").points("coupling/velocity");
-  change_ = state.array("coupling/change").points("coupling/change");
-  probed_x_ = state.array("coupling/probed_points").points("coupling/probed_points");
-  for (const Points* each : {&x, &direction, &last_velocity_, &change_, &probed_x_})
-    if (each->size() != shell_->x().size())
-      throw InputError("{}: coupling/... has {} nodes, the leaflets have {}", state.source, each->size(),
-                       shell_->x().size());
-  shell_->set_x(std::move(x));
+  if (!body_) return;
+  const auto points = [&](const char* name, std::size_t size) {
+    Points read = state.array(name).points(name);
+    if (read.size() != size)
+      throw InputError("{}: {} has {} entries, the structure has {}", state.source, name, read.size(), size);
+    return read;
+  };
+  const std::size_t nodes = body_->x().size(), unknowns = body_->unknowns();
+  Points x = points("coupling/points", nodes);
+  Points direction = points("coupling/direction", unknowns);
+  last_velocity_ = points("coupling/velocity", unknowns);
+  change_ = points("coupling/change", unknowns);
+  probed_x_ = points("coupling/probed_points", nodes);
+  body_->load(state);
+  body_->set_x(std::move(x));
   power_.restore(std::move(direction), history[4]);
 }
 

@@ -1,4 +1,5 @@
-// The coupled system of one time step: fluid and, where the scene has one, an immersed shell.
+// The coupled system of one time step: fluid and, where the scene has one, an immersed
+// body (immersed_body.hpp).
 //
 //   every probe_interval steps, or when an edge was strained: lambda_max of (1/rho) J S K anew
 //   (stability.hpp) dt from the limits;  0D models of the ends to t + dt;  F = F(x^n);  f = S F;  u^(n+1) by
@@ -13,6 +14,7 @@
 #include <map>
 #include <memory>
 
+#include "coupling/immersed_body.hpp"
 #include "coupling/immersed_shell.hpp"
 #include "coupling/stability.hpp"
 #include "coupling/transfer.hpp"
@@ -34,15 +36,15 @@ struct ImmersedFlowSettings {
 
 struct ImmersedStep {
   double dt_s = 0;
-  double critical_s = 0;  ///< dt_crit; infinite without a shell
+  double critical_s = 0;  ///< dt_crit; infinite without a body
   int repeats = 0;        ///< attempts that were undone
   fluid::StepReport fluid;
 };
 
 class ImmersedFlow {
  public:
-  /// shell may be null: flow past held bodies alone. The flow must outlive this object.
-  ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedShell> shell, const ImmersedFlowSettings& settings);
+  /// body may be null: flow past held bodies alone. The flow must outlive this object.
+  ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedBody> body, const ImmersedFlowSettings& settings);
 
   /// One step of at most `at_most` seconds. set_ends(dt) is called before every attempt, to bring the
   /// pressures of the flow's ends to the end of the step. NumericalFailure (on all ranks) by any alarm: the
@@ -50,14 +52,17 @@ class ImmersedFlow {
   ImmersedStep step(double at_most, const std::function<void(double dt)>& set_ends = {});
 
   fluid::Flow& flow() { return flow_; }
-  ImmersedShell* shell() { return shell_.get(); }
-  const ImmersedShell* shell() const { return shell_.get(); }
+  ImmersedBody* body() { return body_.get(); }
+  const ImmersedBody* body() const { return body_.get(); }
+  /// The body where it is leaflets; null otherwise.
+  ImmersedShell* shell() { return shell_; }
+  const ImmersedShell* shell() const { return shell_; }
   long steps() const { return steps_; }
   /// Scales limits.safety from now on: smaller steps after an alarm. Part of the state.
   void set_caution(double factor) { caution_ = factor; }
   double caution() const { return caution_; }
 
-  /// Flow, shell, power iteration and step history; complete on rank 0 (collective). load wants the full
+  /// Flow, body, power iteration and step history; complete on rank 0 (collective). load wants the full
   /// arrays on every rank and continues bitwise at equal ranks.
   std::map<std::string, state::Array> save() const;
   void load(const state::State& state);
@@ -65,16 +70,21 @@ class ImmersedFlow {
  private:
   void probe();
   double plan(double at_most);
+  void locate();
+  void spread(const Points& force, fluid::FaceField& density);
+  void interpolate(const fluid::FaceField& velocity, Points& out);
 
   fluid::Flow& flow_;
-  std::unique_ptr<ImmersedShell> shell_;
+  std::unique_ptr<ImmersedBody> body_;
+  ImmersedShell* shell_;
   ImmersedFlowSettings settings_;
   Transfer transfer_;
   PowerIteration power_;
-  Points last_velocity_, change_;  // of the nodes in the last step; its difference to the step before
+  Points last_velocity_, change_;  // of the unknowns in the last step; its difference to the step before
   Points probed_x_;                // where lambda_max was last looked for
   fluid::FaceField scratch_;
   Points force_, velocity_;
+  Points at_points_;  // of the sampling
   long steps_ = 0, probed_ = 0;
   double last_dt_ = 0, max_speed_ = 0, caution_ = 1;
 };

@@ -11,8 +11,6 @@ namespace valsalva::coupling {
 
 namespace {
 
-constexpr double fastest_mm_per_s = 2e4;  // ten times a stenotic jet
-
 void sum_over_ranks(MPI_Comm comm, int ranks, Points& values) {
   if (ranks > 1 && !values.empty()) mpi::sum_in_place(comm, values[0].data(), 3 * values.size());
 }
@@ -85,7 +83,7 @@ void ImmersedShell::tangent_product(const Points& direction, Points& out) const 
     if (clamped_[a]) out[a].setZero();
 }
 
-void ImmersedShell::move(const Points& velocity, double dt) {
+void ImmersedShell::move(Points& velocity, double dt) {
   for (std::size_t a = 0; a < x_.size(); ++a) {
     if (clamped_[a]) continue;
     if (!(velocity[a].norm() < fastest_mm_per_s))
@@ -98,7 +96,7 @@ void ImmersedShell::move(const Points& velocity, double dt) {
   moved();
 }
 
-ImmersedShell::EdgeStretch ImmersedShell::edge_stretch(const Points& since) const {
+EdgeStretch ImmersedShell::edge_stretch(const Points& since) const {
   const structure::ShellMesh& mesh = shell_.mesh();
   double largest = 0, change = 0;  // of squares
   for (const Triangle& t : mesh.triangles)

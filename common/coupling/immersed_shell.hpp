@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/mpi.hpp"
+#include "coupling/immersed_body.hpp"
 #include "coupling/near_pairs.hpp"
 #include "coupling/repulsion.hpp"
 #include "structure/shell.hpp"
@@ -18,24 +19,22 @@ struct Spacing {
   double standoff_mm = 0;  ///< standoff.hpp; 0: none
 };
 
-class ImmersedShell {
+class ImmersedShell : public ImmersedBody {
  public:
   /// rest: where neighbours neither repel each other nor stand off. clamped: one a node. group: leaflet of
   /// each node.
   ImmersedShell(MPI_Comm comm, structure::Shell shell, Points rest, Points start,
                 std::vector<std::uint8_t> clamped, std::vector<int> group, const Spacing& spacing);
-  ImmersedShell(const ImmersedShell&) = delete;
-  ImmersedShell& operator=(const ImmersedShell&) = delete;
 
   const structure::Shell& shell() const { return shell_; }
-  const Points& x() const { return x_; }
+  const Points& x() const override { return x_; }
   /// Where the shell couples to the grid (standoff.hpp).
-  const Points& coupling_points() const { return coupled_; }
-  void set_x(Points x);
+  const Points& coupling_points() const override { return coupled_; }
+  void set_x(Points x) override;
   bool clamped(std::size_t node) const { return clamped_[node] != 0; }
 
   /// Elastic force and repulsion on every node, uN; zero at clamped nodes (collective).
-  void forces(Points& out);
+  void forces(Points& out) override;
   /// Force of the shell on what holds its clamped nodes, uN, at the last forces().
   const Vec3& pull_on_clamps() const { return pull_; }
   /// Ranges of the repulsion, from those of the start (0) to the full ones (1).
@@ -44,16 +43,12 @@ class ImmersedShell {
   double nearest() const { return repulsion_.nearest(); }
 
   /// The tangent (positive semi-definite) at the present shape; then out = K direction (collective).
-  void update_tangent();
-  void tangent_product(const Points& direction, Points& out) const;
+  void update_tangent() override;
+  void tangent_product(const Points& direction, Points& out) const override;
 
   /// x += dt u for free nodes. NumericalFailure when a node is not finite or faster than 2e4 mm/s.
-  void move(const Points& velocity, double dt);
-  struct EdgeStretch {
-    double largest = 1;  ///< present length of an edge over its reference length
-    double change = 0;   ///< largest relative change of an edge's length since the positions given
-  };
-  EdgeStretch edge_stretch(const Points& since) const;
+  void move(Points& velocity, double dt) override;
+  EdgeStretch edge_stretch(const Points& since) const override;
 
  private:
   void moved();

@@ -1,6 +1,7 @@
 #include "coupling/transfer.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/errors.hpp"
 #include "core/mpi.hpp"
@@ -13,18 +14,27 @@ using Quad = Eigen::Array<double, 4, 1>;
 
 constexpr double margin_cells = 2;
 
+int wrapped(int i, int n) {
+  return (i % n + n) % n;
+}
+
 }  // namespace
 
-Transfer::Transfer(const fluid::Slab& slab, Kernel kernel) : slab_(slab), kernel_(kernel) {}
+Transfer::Transfer(const fluid::Slab& slab, Kernel kernel, std::array<bool, 3> periodic)
+    : slab_(slab), kernel_(kernel), periodic_(periodic) {
+  VALSALVA_ASSERT(periodic_[2] == slab.periodic_z);
+}
 
 void Transfer::locate(const Points& x) {
   const fluid::Grid& grid = slab_.grid;
   const double per_mm = 1 / grid.h;
   stencils_.resize(x.size());
   for (std::size_t a = 0; a < x.size(); ++a) {
-    const Vec3 cell = per_mm * (x[a] - grid.origin);
+    Vec3 cell = per_mm * (x[a] - grid.origin);
     for (int d = 0; d < 3; ++d) {
-      if (!(cell[d] >= margin_cells && cell[d] <= grid.cells[d] - margin_cells))
+      if (periodic_[d] && std::isfinite(cell[d])) {
+        cell[d] -= grid.cells[d] * std::floor(cell[d] / grid.cells[d]);
+      } else if (!(cell[d] >= margin_cells && cell[d] <= grid.cells[d] - margin_cells))
         throw NumericalFailure(
             "coupling: node {} is at ({:.4g}, {:.4g}, {:.4g}) mm, less than {} cells from a side of the "
             "fluid's "
@@ -36,7 +46,7 @@ void Transfer::locate(const Points& x) {
   }
 }
 
-// Calls row(first face index i, j, local k, weight across) for every owned row of faces in the stencil.
+// Calls row(face index j, local k, weight across) for every owned row of faces in the stencil.
 template <class Row>
 void Transfer::visit(const Stencil& stencil, int component, Row&& row) const {
   const Weights& y = component == 1 ? stencil.face[1] : stencil.centre[1];
@@ -44,38 +54,61 @@ void Transfer::visit(const Stencil& stencil, int component, Row&& row) const {
   const int planes = component == 2 ? slab_.w_planes() : slab_.planes;
   const int used_y = support(component == 1 ? kernel_.along : kernel_.across);
   const int used_z = support(component == 2 ? kernel_.along : kernel_.across);
-  const int first = z.start - slab_.first;
-  const int low = std::max(0, -first), high = std::min(used_z, planes - first);
-  for (int c = low; c < high; ++c)
-    for (int b = 0; b < used_y; ++b) row(y.start + b, first + c, z.value[c] * y.value[b]);
+  for (int c = 0; c < used_z; ++c) {
+    const int plane = periodic_[2] ? wrapped(z.start + c, slab_.grid.cells[2]) : z.start + c;
+    const int k = plane - slab_.first;
+    if (k < 0 || k >= planes) continue;
+    for (int b = 0; b < used_y; ++b) {
+      const int j = periodic_[1] ? wrapped(y.start + b, slab_.grid.cells[1]) : y.start + b;
+      row(j, k, z.value[c] * y.value[b]);
+    }
+  }
+}
+
+bool Transfer::wraps(const Weights& x) const {
+  return periodic_[0] && (x.start < 0 || x.start + 4 > slab_.grid.cells[0]);
 }
 
 void Transfer::spread(const Points& force, fluid::FaceField& density) const {
-  VALSALVA_ASSERT(force.size() == stencils_.size());
+  VALSALVA_ASSERT(force.size() >= stencils_.size());
   const double per_volume = 1 / (slab_.grid.h * slab_.grid.h * slab_.grid.h);
+  const int nx = slab_.grid.cells[0];
   for (int d = 0; d < 3; ++d) {
     fluid::Field& field = density[d];
-    for (std::size_t a = 0; a < force.size(); ++a) {
+    for (std::size_t a = 0; a < stencils_.size(); ++a) {
       if (force[a][d] == 0) continue;
       const Weights& x = d == 0 ? stencils_[a].face[0] : stencils_[a].centre[0];
       const Quad along = per_volume * force[a][d] * Eigen::Map<const Quad>(x.value.data());
-      visit(stencils_[a], d, [&](int j, int k, double across) {
-        Eigen::Map<Quad>(field.row(j, k) + x.start) += across * along;
-      });
+      if (wraps(x)) {
+        visit(stencils_[a], d, [&](int j, int k, double across) {
+          for (int i = 0; i < 4; ++i) field(wrapped(x.start + i, nx), j, k) += across * along[i];
+        });
+      } else {
+        visit(stencils_[a], d, [&](int j, int k, double across) {
+          Eigen::Map<Quad>(field.row(j, k) + x.start) += across * along;
+        });
+      }
     }
   }
 }
 
 void Transfer::interpolate(const fluid::FaceField& velocity, Points& out) const {
   out.resize(stencils_.size());
+  const int nx = slab_.grid.cells[0];
   for (int d = 0; d < 3; ++d) {
     const fluid::Field& field = velocity[d];
     for (std::size_t a = 0; a < stencils_.size(); ++a) {
       const Weights& x = d == 0 ? stencils_[a].face[0] : stencils_[a].centre[0];
       Quad sum = Quad::Zero();
-      visit(stencils_[a], d, [&](int j, int k, double across) {
-        sum += across * Eigen::Map<const Quad>(field.row(j, k) + x.start);
-      });
+      if (wraps(x)) {
+        visit(stencils_[a], d, [&](int j, int k, double across) {
+          for (int i = 0; i < 4; ++i) sum[i] += across * field(wrapped(x.start + i, nx), j, k);
+        });
+      } else {
+        visit(stencils_[a], d, [&](int j, int k, double across) {
+          sum += across * Eigen::Map<const Quad>(field.row(j, k) + x.start);
+        });
+      }
       const Quad part = sum * Eigen::Map<const Quad>(x.value.data());
       out[a][d] = (part[0] + part[1]) + (part[2] + part[3]);
     }

@@ -7,9 +7,11 @@
 // S and J are adjoint: h^3 sum_faces (S F) u = sum_a F_a . (J u)_a, to round-off. Each rank spreads to the
 // faces it owns and interpolates from them; the partial sums are added over ranks, in rank order.
 //
-// Nodes have to stay two cells away from the sides of the box: NumericalFailure names the one that does not.
+// Along a periodic direction a node may be anywhere and acts on the images of the box alike. Elsewhere nodes
+// have to stay two cells away from the sides of the box: NumericalFailure names the one that does not.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/types.hpp"
@@ -20,11 +22,12 @@ namespace valsalva::coupling {
 
 class Transfer {
  public:
-  Transfer(const fluid::Slab& slab, Kernel kernel);
+  /// periodic: in x, y and z, as the sides of the box are.
+  Transfer(const fluid::Slab& slab, Kernel kernel, std::array<bool, 3> periodic = {});
 
   /// Takes the nodes' positions: every spread and interpolation until the next call uses them.
   void locate(const Points& x);
-  /// density += S force on the owned faces.
+  /// density += S force on the owned faces; of a longer list the first entries count.
   void spread(const Points& force, fluid::FaceField& density) const;
   /// out = J velocity, the same on all ranks (collective). Ghosts are not read.
   void interpolate(const fluid::FaceField& velocity, Points& out) const;
@@ -36,9 +39,11 @@ class Transfer {
   };
   template <class Row>
   void visit(const Stencil& stencil, int component, Row&& row) const;
+  bool wraps(const Weights& x) const;
 
   const fluid::Slab& slab_;
   Kernel kernel_;
+  std::array<bool, 3> periodic_;
   std::vector<Stencil> stencils_;
 };
 

@@ -1,0 +1,74 @@
+// Coupling to the grid by element quadrature, with a density that follows the deformation.
+//
+//   spread:       F_q = w_q sum_a N_a(q) F_a / m_a          at the points x_q = sum_a N_a(q) x_a
+//   interpolate:  U_a = 1/m_a sum_q w_q N_a(q) u(x_q),      m_a = sum_q w_q N_a(q)
+//
+// the adjoint pair of Griffith and Luo 2017 (Hybrid finite difference/finite element immersed boundary
+// method), sections 3 and 4, with the lumped mass matrix: force and power are kept to round-off, constant
+// velocities are exact, linear ones are smoothed over an element. Points of a cell: the midpoints of an equal
+// division of its edges, so many that their distance is at most `spacing` in the present shape; equal
+// weights, shares of the cell's reference measure.
+//
+// Cells are linear: lines, triangles, tetrahedra and hexahedra; quadratic elements are divided into linear
+// ones over their nodes. A node without cell is a point itself.
+#pragma once
+
+#include <array>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "structure/solid.hpp"
+
+namespace valsalva::coupling {
+
+/// 2 nodes: line, 3: triangle, 4: tetrahedron, 8: hexahedron (VTK's order).
+struct Cell {
+  int count = 0;
+  std::array<int, 8> nodes{};
+};
+
+std::vector<Cell> cells_of(std::span<const Edge> lines, int offset = 0);
+std::vector<Cell> cells_of(std::span<const Triangle> triangles, int offset = 0);
+/// tet10: 8 tetrahedra; hex27: 8 hexahedra.
+std::vector<Cell> cells_of(const structure::SolidMesh& mesh, int offset = 0);
+/// Node pairs of all edges, each once.
+std::vector<Edge> edges_of(std::span<const Cell> cells);
+
+class Sampling {
+ public:
+  /// spacing: largest distance of neighbouring points, mm; about h/2. InputError when it is not positive.
+  Sampling(std::vector<Cell> cells, const Points& reference, double spacing_mm);
+
+  /// Chooses the points anew for these positions of the nodes.
+  void locate(const Points& x);
+  const Points& points() const { return points_; }
+  /// at_points is resized; of a longer list of nodal forces the first entries count.
+  void to_points(const Points& nodal_force, Points& at_points) const;
+  /// at_nodes is resized.
+  void to_nodes(const Points& point_velocity, Points& at_nodes) const;
+  std::size_t nodes() const { return mass_.size(); }
+
+ private:
+  struct Rule {
+    int points = 0, nodes = 0;
+    std::vector<double> shape;  // of each point
+  };
+  struct Run {  // points of one cell
+    int cell;
+    const Rule* rule;
+    double share;  // of the measure, each point
+  };
+  const Rule& rule(int count, const std::array<int, 3>& division);
+
+  std::vector<Cell> cells_;
+  std::vector<double> measure_, mass_;
+  std::vector<int> alone_;  // nodes without cell
+  double spacing_;
+  std::map<std::array<int, 4>, Rule> rules_;
+  std::vector<Run> runs_;
+  Points points_;
+};
+
+}  // namespace valsalva::coupling
