@@ -34,11 +34,17 @@ def colours(low, high, title):
     bar.SetLookupTable(table)
     bar.SetTitle(title)
     bar.SetNumberOfLabels(5)
-    bar.SetPosition(0.86, 0.1)
+    bar.SetLabelFormat("%.3g")
+    bar.SetVerticalTitleSeparation(10)
+    bar.UnconstrainedFontSizeOn()
+    bar.SetPosition(0.84, 0.1)
     bar.SetWidth(0.1)
     bar.SetHeight(0.8)
     for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
         text.SetColor(0, 0, 0)
+        text.SetFontSize(14)
+        text.ItalicOff()
+        text.BoldOff()
         text.ShadowOff()
     return table, bar
 
@@ -87,6 +93,8 @@ def main():
         mapper.SetInputData(mesh)
         actor = vtk.vtkActor()
         actor.SetMapper(mapper)
+        actor.GetProperty().SetAmbient(0.35)  # steep parts stay readable
+        actor.GetProperty().SetDiffuse(0.65)
         if options.clip:
             plane = vtk.vtkPlane()
             plane.SetOrigin(middle)

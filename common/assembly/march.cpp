@@ -88,6 +88,8 @@ class Explicit : public March {
     in.step_s = s.mass_scaling ? dividing(s.end_s, in.step_s) : in.step_s;
     in.safety = s.safety;
     in.scaling_interval = 20;
+    // Of what the safety leaves.
+    if (s.mass_scaling) in.growth_limit = 1 + std::max(0.01, 0.2 * (1 / (s.safety * s.safety) - 1));
     in.damping_per_s = s.damping;
     in.speed_limit_mm_per_s = s.speed_limit;
     integrator_ = std::make_unique<structure::Integrator>(*scene.system, scene.terms, in);
@@ -99,6 +101,8 @@ class Explicit : public March {
     const double planned = integrator_->prepare(std::min(left, reachable_s()));
     drive_.set_velocities(system, before + planned, planned);
     integrator_->advance();  // contact may have cut the step
+    if (s_.mass_scaling)     // the step is fixed: it slows nodes instead
+      for (const auto& contact : scene_.body_contacts) contact->limit_velocities(system, planned);
     if (s_.end_s - system.state.time_s <= 1e-9 * planned) system.state.time_s = s_.end_s;
     const double now = system.state.time_s;
     shortest_ = std::min(shortest_, now - before);

@@ -1,7 +1,8 @@
 // Advances a scene: one interface over the four solvers of [dynamics].
 //
 //   explicit      central differences (structure/integrator.hpp), with the stable step of every moment, at
-//                 most step_s; one step is one time step. Velocities stand half a step behind positions
+//                 most step_s, or with step_s and masses raised to fit; one step is one time step. Velocities
+//                 stand half a step behind positions
 //   quasi_static  load steps; each is brought to rest by dynamic relaxation: masses scaled to a unit pseudo
 //                 step, damping 2 omega with omega^2 the Rayleigh quotient of the present motion (Underwood
 //                 1983). At rest: unbalanced force <= residual x force of loads and supports, and kinetic <=

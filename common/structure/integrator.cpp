@@ -52,7 +52,10 @@ Integrator::Integrator(System& system, std::vector<std::shared_ptr<ForceTerm>> t
       inertia_(system.inertias()),
       carried_(system.nodes(), 0),
       dt_(settings.step_s),
-      stored_of_(terms_.size(), 0.0) {
+      stored_of_(terms_.size(), 0.0),
+      interval_(std::isfinite(settings.growth_limit) ? 1 : settings.scaling_interval) {
+  if (!(settings_.growth_limit > 1))
+    throw InputError("integrator: growth limit {}; expected above 1", settings_.growth_limit);
   if (!(settings_.step_s > 0) || !(settings_.safety > 0) || settings_.safety > 1 ||
       settings_.scaling_interval < 1 || !(settings_.damping_per_s >= 0))
     throw InputError(
@@ -131,7 +134,7 @@ void Integrator::evaluate_forces() {
 }
 
 void Integrator::bound_stiffness() {
-  const bool all = steps_ % settings_.scaling_interval == 0;
+  const bool all = steps_ == next_bound_;
   const bool any =
       std::any_of(terms_.begin(), terms_.end(), [](auto& t) { return t->stiffness_is_abrupt(); });
   if (!all && !any) return;
@@ -139,11 +142,30 @@ void Integrator::bound_stiffness() {
     smooth_.reset(system_.nodes(), system_.rotational_nodes());
     for (const auto& term : terms_)
       if (!term->stiffness_is_abrupt()) term->add_stiffness_bound(system_.state, smooth_);
+    const double grown = steps_ > 0 && std::isfinite(settings_.growth_limit) ? outgrown() : 1;
+    if (grown > settings_.growth_limit)
+      interval_ = std::max(1, interval_ / 2);
+    else if (grown <= std::sqrt(settings_.growth_limit))
+      interval_ = std::min(settings_.scaling_interval, 2 * interval_);
+    next_bound_ = steps_ + interval_;
   }
   bound_ = smooth_;
   for (const auto& term : terms_)
     if (term->stiffness_is_abrupt()) term->add_stiffness_bound(system_.state, bound_);
   if (!settings_.adaptive) scale_masses();
+}
+
+/// The largest smooth bound over the one for which its mass and the step were chosen.
+double Integrator::outgrown() const {
+  const double reach = dt_ / (2 * settings_.safety);
+  double most = 0;
+  for (std::size_t a = 0; a < mass_.size(); ++a)
+    if (!system_.held(static_cast<int>(a)))
+      most = std::max(most, reach * reach * smooth_.translation[a] / mass_[a]);
+  for (std::size_t r = 0; r < inertia_.size(); ++r)
+    if (!system_.held(system_.node_of_rotation(static_cast<int>(r))))
+      most = std::max(most, reach * reach * smooth_.rotation[r] / inertia_[r]);
+  return most;
 }
 
 void Integrator::choose_step(double largest_s) {
@@ -339,6 +361,8 @@ Snapshot Integrator::save() const {
   s["energies"] = {energies_.kinetic,          energies_.stored,       energies_.stored_at_start,
                    energies_.kinetic_at_start, energies_.damping_work, energies_.support_work,
                    energies_.scaling_energy};
+  if (std::isfinite(settings_.growth_limit))
+    s["bounds"] = {static_cast<double>(interval_), static_cast<double>(next_bound_)};
   if (settings_.adaptive) s["steps"] = {dt_, last_dt_, first_dt_};
   for (const auto& body : rigid_) s["rigid/" + body->name()] = body->save();
   std::vector<double>& held = s["held"];
@@ -366,6 +390,13 @@ void Integrator::restore(const Snapshot& s) {
   now.time_s = clock[0];
   steps_ = static_cast<long>(clock[1]);
   settings_.damping_per_s = clock[2];
+  if (std::isfinite(settings_.growth_limit)) {
+    const std::vector<double>& bounds = entry(s, "bounds", 2);
+    interval_ = static_cast<int>(bounds[0]);
+    next_bound_ = static_cast<long>(bounds[1]);
+  } else {
+    next_bound_ = (steps_ + interval_ - 1) / interval_ * interval_;
+  }
   if (settings_.adaptive) {
     const std::vector<double>& steps = entry(s, "steps", 3);
     dt_ = steps[0];

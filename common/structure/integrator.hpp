@@ -4,8 +4,11 @@
 // rotations alike with R+ = exp(dt omega+) R; alpha the mass-proportional damping. Velocities stand half a
 // step behind positions. Stable for dt <= 2/sqrt(max k_i/m_i), k_i from the terms' stiffness bounds; with a
 // target step, nodal masses and inertias are raised where needed (mass scaling), every `scaling_interval`
-// steps anew, in every step for terms whose stiffness is abrupt (contact). Sources: Belytschko, Liu and Moran
-// 2000, section 6.2; Simo and Vu-Quoc 1991 for the rotation update.
+// steps anew, in every step for terms whose stiffness is abrupt (contact). With a `growth_limit` the interval
+// starts at 1, is doubled, up to scaling_interval, while bounds hardly outgrow the masses chosen for them,
+// and halved when one has by more than the limit: what stiffens within an interval by more than 1/safety^2 is
+// unstable. Sources: Belytschko, Liu and Moran 2000, section 6.2; Simo and Vu-Quoc 1991 for the rotation
+// update.
 //
 // Adaptive: the step follows the stable one, safety x 2/sqrt(max k_i/m_i), anew in every step (terms that are
 // not abrupt: every `scaling_interval` steps), grows by at most a tenth a step and ends where the caller
@@ -30,13 +33,14 @@
 namespace valsalva::structure {
 
 struct IntegratorSettings {
-  double step_s = 1e-5;               ///< the target step; adaptive: the largest
-  bool mass_scaling = true;           ///< false: a too large step is refused
-  bool adaptive = false;              ///< instead of mass scaling or refusal
-  double safety = 0.8;                ///< of the stability limit
-  int scaling_interval = 50;          ///< steps between new stiffness bounds
-  double damping_per_s = 0;           ///< alpha
-  double speed_limit_mm_per_s = 1e5;  ///< alarm
+  double step_s = 1e-5;       ///< the target step; adaptive: the largest
+  bool mass_scaling = true;   ///< false: a too large step is refused
+  bool adaptive = false;      ///< instead of mass scaling or refusal
+  double safety = 0.8;        ///< of the stability limit
+  int scaling_interval = 50;  ///< steps between new stiffness bounds, at most
+  double growth_limit = std::numeric_limits<double>::infinity();  ///< below 1/safety^2, or none
+  double damping_per_s = 0;                                       ///< alpha
+  double speed_limit_mm_per_s = 1e5;                              ///< alarm
 };
 
 struct Energies {
@@ -94,6 +98,7 @@ class Integrator {
  private:
   void evaluate_forces();
   void bound_stiffness();
+  double outgrown() const;
   void scale_masses();
   void choose_step(double largest_s);
   void move();
@@ -114,6 +119,8 @@ class Integrator {
   std::vector<double> stored_of_;
   Energies energies_;
   long steps_ = 0;
+  int interval_;         // now between new stiffness bounds
+  long next_bound_ = 0;  // the step of the next ones
 };
 
 }  // namespace valsalva::structure

@@ -31,6 +31,40 @@ class Spring : public ForceTerm {
   double k_;
 };
 
+// One node that a cord stops: the stiffness grows like exp(x) once it is taut.
+class Cord : public ForceTerm {
+ public:
+  std::string name() const override { return "cord"; }
+  double add_forces(const Configuration& now, Forces& out) const override {
+    const double x = now.x[0].x();
+    if (x <= 0) return 0;
+    out.force[0].x() -= k_ * (std::exp(b_ * x) - 1) / b_;
+    return (k_ * (std::exp(b_ * x) - 1) / b_ - k_ * x) / b_;
+  }
+  void add_stiffness_bound(const Configuration& now, StiffnessBound& out) const override {
+    out.translation[0] += k_ * std::exp(b_ * std::max(now.x[0].x(), 0.0));
+  }
+  /// Stored when it hangs at rest under a force.
+  double energy_under(double force) const {
+    const double x = std::log1p(b_ * force / k_) / b_;
+    return (force - k_ * x) / b_;
+  }
+
+ private:
+  static constexpr double k_ = 1, b_ = 8;
+};
+
+class Pull : public ForceTerm {
+ public:
+  static constexpr double rate = 20;
+  std::string name() const override { return "pull"; }
+  double add_forces(const Configuration& now, Forces& out) const override {
+    out.force[0].x() += rate * now.time_s;
+    return 0;
+  }
+  void add_stiffness_bound(const Configuration&, StiffnessBound&) const override {}
+};
+
 // A beam loop with a sheet sewn to it, thrown and spinning.
 struct Scene {
   System system;
@@ -140,6 +174,28 @@ TEST(Integrator, MassScalingHoldsALargeStepAndSaysSo) {
   EXPECT_GT(integrator.mass_ratio(), 1.5);
   EXPECT_TRUE(std::isfinite(integrator.energies().kinetic));
   EXPECT_LT(std::abs(integrator.energies().load_work()), 0.05 * integrator.energies().kinetic_at_start);
+}
+
+TEST(Integrator, BoundsFollowWhatStiffensFast) {
+  // Pulled slowly, against the step: the energy stays that of the cord at rest under the load.
+  const auto energy_over_static = [](double growth_limit) {
+    System system;
+    system.add_body("node", {Vec3::Zero()}, {1e-9});
+    IntegratorSettings settings = with_step(2.5e-4, true);
+    settings.scaling_interval = 50;
+    settings.growth_limit = growth_limit;
+    const auto cord = std::make_shared<Cord>();
+    Integrator integrator(system, {cord, std::make_shared<Pull>()}, settings);
+    double most = 0;
+    for (int i = 0; i < 400; ++i) {
+      integrator.step();
+      most = std::max(most, integrator.energies().kinetic + integrator.stored_of(0));
+    }
+    return most / cord->energy_under(Pull::rate * system.state.time_s);
+  };
+  EXPECT_THROW(energy_over_static(std::numeric_limits<double>::infinity()), NumericalFailure);
+  EXPECT_NEAR(energy_over_static(1.1), 1, 0.1);
+  EXPECT_THROW(energy_over_static(1), InputError);
 }
 
 TEST(Integrator, DampingTakesTheEnergyThatItReports) {
