@@ -5,6 +5,7 @@ set -eu
 cd "$(dirname "$0")/.."
 git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 [ -f build/compile_commands.json ] || cmake --preset release >/dev/null
+cmake --build build --target valsalva_version >/dev/null  # the only header that is generated
 folders='common segment mesher crimp deploy cycle pipelines'
 if [ -n "${SINCE:-}" ]; then
   # shellcheck disable=SC2086
