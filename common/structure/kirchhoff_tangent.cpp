@@ -34,8 +34,13 @@ void KirchhoffShell::add_tangent(const Points& x, BlockMatrix& out, int offset,
                                  std::span<const Mat3> clamps) const {
   Points vertices;
   edges_.gather(x, offset, vertices, clamps);
-  for (const Element& e : elements_)
-    edges_.add_matrix(e.vertices, element_tangent(vertices, e, false), out, offset);
+  constexpr int batch = 256;  // bounds the memory; the sums keep the order of the elements
+  std::vector<ElementMatrix> k(batch);
+  for (int first = 0; first < elements(); first += batch) {
+    const int count = std::min(batch, elements() - first);
+    for_all(count, "", first, [&](int i) { k[i] = element_tangent(vertices, elements_[first + i], false); });
+    for (int i = 0; i < count; ++i) edges_.add_matrix(elements_[first + i].vertices, k[i], out, offset);
+  }
 }
 
 KirchhoffShell::Jet KirchhoffShell::jet_of(const Points& x, int element, int offset) const {
