@@ -9,10 +9,10 @@ Reads the last view of each case (or the one nearest to --time). The regions are
 the middle third each way; commissure, the upper fifth of the sides; free edge, the two rows below it. Prints Markdown:
 mean von Mises stress and stretch of each region, weighted by the elements' reference areas, and the 99th percentile.
 --valve LEAFLETS,RADIUS,DISTANCE adds what the leaflets do together: the orifice, as common/metrics/orifice.hpp defines
-it in a tube of that radius about the z axis; the coaptation, the area of all leaflets whose elements' middles are nearer
-to another leaflet than 1.2 times the distance at which they meet. --columns adds columns of history.csv at that time;
---course COLUMN,TIME the times that a column takes for nine tenths of its way from the start to that time (opening) and
-from there to the end (closing).
+it, in a tube of that radius about the z axis, with the bodies --beside in the way; the coaptation, the area of all
+leaflets whose elements' middles are nearer to another leaflet than 1.2 times the distance at which they meet. --columns
+adds columns of history.csv at that time; --course COLUMN,TIME the times that a column takes for nine tenths of its way
+from the start to that time (opening) and from there to the end (closing).
 """
 
 import argparse
@@ -141,8 +141,9 @@ def together(names, options):
     for name in names:
         folder = options.runs / name / "cycle"
         triangles = triangles_of(read(view_of(folder, options.body, options.time)))
+        beside = [triangles_of(read(view_of(folder, other, options.time))) for other in options.beside.split(",") if other]
         leaflets, radius, distance = options.valve
-        values = [orifice(triangles, radius), coaptation(triangles, int(leaflets), 1.2 * distance)]
+        values = [orifice(np.concatenate([triangles, *beside]), radius), coaptation(triangles, int(leaflets), 1.2 * distance)]
         history = Table(folder / "history.csv")
         values += [history.column(column)[history.row_at(options.time)] for column in columns]
         if options.course:
