@@ -20,8 +20,8 @@ struct Line {
 template <class Given>
 void fill_side(const Line& line, int width, int side, Side kind, bool normal, bool owned,
                const Given& given) {
-  const auto [base, s, n] = line;
-  const auto at = [=](int m) { return base + m * s; };
+  const int n = line.n;
+  const auto at = [&line](int m) { return line.base + m * line.s; };
   const auto set = [width](double* to, double factor, const double* from) {
     for (int i = 0; i < width; ++i) to[i] = factor * from[i];
   };
