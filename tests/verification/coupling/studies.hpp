@@ -1,0 +1,9 @@
+// Studies that have a file of their own; the others are in study.cpp.
+#pragma once
+
+namespace valsalva {
+
+/// Grid spacing in mm, time until which the valve closes.
+int study_diastole(double h, double end_s);
+
+}  // namespace valsalva
