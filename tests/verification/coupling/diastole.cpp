@@ -1,8 +1,8 @@
 // What a step limited by flow would cost in diastole: a valve held closed, the explicit limit, and conjugate
 // gradients on the linearised implicit step (I + dt^2 M K) U = b with the real spreading and interpolation
 // M = (1/rho) J S and the present tangent K.
-#include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include "studies.hpp"
 #include "valve_rig.hpp"
@@ -11,10 +11,8 @@ namespace valsalva {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
+double processor_s() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 double dot(const Points& a, const Points& b) {
@@ -63,15 +61,15 @@ int study_diastole(double h, double end_s) {
   coupling::ImmersedStep last;
   double speed = 0;
   long steps = 0;
-  Clock::time_point begin = Clock::now();
+  double begin = processor_s();
   double explicit_s = 0;
   rig.run_to(end_s, [&](const coupling::ImmersedStep& step) {
     last = step;
     ++steps;
     if (rig.time_s > end_s - 2e-3) speed = std::max(speed, step.fluid.max_speed);
     if (steps % 100 == 0) {
-      explicit_s = since(begin) / 100;
-      begin = Clock::now();
+      explicit_s = (processor_s() - begin) / 100;
+      begin = processor_s();
     }
   });
   coupling::ImmersedShell& shell = *rig.system->shell();
@@ -82,18 +80,18 @@ int study_diastole(double h, double end_s) {
   double stiffness_s = 0, mobility_s = 0;
   long products = 0;
   const coupling::Operator stiffness = [&](const Points& y, Points& f) {
-    const Clock::time_point start = Clock::now();
+    const double start = processor_s();
     shell.tangent_product(y, f);
-    stiffness_s += since(start);
+    stiffness_s += processor_s() - start;
     ++products;
   };
   const coupling::Operator mobility = [&](const Points& f, Points& v) {
-    const Clock::time_point start = Clock::now();
+    const double start = processor_s();
     scratch.fill(0);
     transfer.spread(f, scratch);
     transfer.interpolate(scratch, v);
     for (Vec3& each : v) each *= 1 / rig.flow->parameters().density;
-    mobility_s += since(start);
+    mobility_s += processor_s() - start;
   };
   Points force, b;
   shell.forces(force);

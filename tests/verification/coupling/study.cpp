@@ -142,8 +142,9 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string(argv[1]) == "waves") return waves();
     if (argc > 1 && std::string(argv[1]) == "spins") return spins();
     if (argc > 2 && std::string(argv[1]) == "membranes") return membranes(std::stol(argv[2]));
-    throw InputError(
-        "study_coupling: expected waves, spins, membranes <steps> or fsi ...; see the head of study.cpp");
+    if (argc > 3 && std::string(argv[1]) == "diastole")
+      return study_diastole(std::stod(argv[2]), std::stod(argv[3]));
+    throw InputError("study_coupling: expected waves, spins, membranes, diastole or fsi; see study.cpp");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
