@@ -210,6 +210,13 @@ struct Trial {
   double size = 0, norm = 0, along = 0;
 };
 
+// The first increment of an attempt: the next one, from the same state, begins with it.
+struct FirstIncrement {
+  Eigen::VectorXd u;
+  LinearReport linear;
+  double round_off = 0;
+};
+
 // What round-off leaves of the forces: 500 of its units of those that would move every node by the length of
 // the scene.
 double force_round_off(const Equations& equations, const BlockMatrix& k) {
@@ -224,9 +231,9 @@ double force_round_off(const Equations& equations, const BlockMatrix& k) {
 
 // Adds to the report's counts, also when it fails.
 void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& matrix, LinearSolver& solver,
-             const NewtonSettings& settings, bool search, NewtonReport& report) {
+             const NewtonSettings& settings, bool search, FirstIncrement& first, NewtonReport& report) {
   Configuration& now = equations.system().state;
-  const int last = report.iterations + settings.max_iterations;
+  const int begin = report.iterations, last = begin + settings.max_iterations;
   double size = 0;
   Eigen::VectorXd residual = problem.residual(size);
   std::string obstacle;
@@ -247,9 +254,19 @@ void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& ma
       throw NumericalFailure(
           "Newton's method: residual {:.3g} of the forces after {} iterations, largest at {}",
           report.residual, settings.max_iterations, equations.worst(residual));
-    problem.tangent(matrix);
-    report.linear = solver.solve(matrix, equations.fixed(), residual, u, now.x);
-    const double round_off = force_round_off(equations, matrix);
+    FirstIncrement here;
+    if (report.iterations == begin && first.u.size() > 0) {
+      here = first;
+    } else {
+      problem.tangent(matrix);
+      here.linear = solver.solve(matrix, equations.fixed(), residual, u, now.x);
+      here.u = u;
+      here.round_off = force_round_off(equations, matrix);
+      if (report.iterations == begin) first = here;
+    }
+    u = here.u;
+    report.linear = here.linear;
+    const double round_off = here.round_off;
     const double allowed = equations.allowed(u);
     const double start = along(residual, u);
     const Configuration before = now;
@@ -307,10 +324,11 @@ void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& ma
 NewtonReport newton(Equations& equations, const NewtonProblem& problem, BlockMatrix& matrix,
                     LinearSolver& solver, const NewtonSettings& settings) {
   NewtonReport report;
+  FirstIncrement first;
   if (!settings.search_first) {
     const Attempt start(equations, equations.system().state);
     try {
-      iterate(equations, problem, matrix, solver, settings, false, report);
+      iterate(equations, problem, matrix, solver, settings, false, first, report);
       return report;
     } catch (const NumericalFailure&) {
       if (!settings.line_search) throw;
@@ -318,7 +336,7 @@ NewtonReport newton(Equations& equations, const NewtonProblem& problem, BlockMat
     start.undo(equations);
   }
   report.searched = true;
-  iterate(equations, problem, matrix, solver, settings, true, report);
+  iterate(equations, problem, matrix, solver, settings, true, first, report);
   return report;
 }
 
