@@ -6,4 +6,7 @@ namespace valsalva {
 /// Grid spacing in mm, time until which the valve closes.
 int study_diastole(double h, double end_s);
 
+/// Kernel, repulsion and standoff: what keeps closed leaflets apart. Same arguments.
+int study_separation(double h, double end_s);
+
 }  // namespace valsalva
