@@ -1,7 +1,7 @@
 // study_coupling: the benchmarks of docs/verification/coupling.md that take longer than a test may.
 //   study_coupling fsi <cells across> <mean mm/s> <solid density g/mm3> <shear Pa> <end s> [key=value ...]
-//   study_coupling waves | spins | membranes <steps> | diastole <h mm> <end s>
-//                | separation <h mm> <end s>
+//   study_coupling waves | spins | membranes <steps> | diastole <h mm> <end s> | separation <h mm> <end s>
+//   study_coupling bar <cells across> <kernel> <end s>
 //     keys: length, ramp, kernel, sampled (0, 1), along, across, wall, csv (file)
 #include <chrono>
 #include <cstdio>
@@ -147,8 +147,10 @@ int main(int argc, char** argv) {
       return study_diastole(std::stod(argv[2]), std::stod(argv[3]));
     if (argc > 3 && std::string(argv[1]) == "separation")
       return study_separation(std::stod(argv[2]), std::stod(argv[3]));
+    if (argc > 4 && std::string(argv[1]) == "bar")
+      return study_bar(std::stoi(argv[2]), argv[3], std::stod(argv[4]));
     throw InputError(
-        "study_coupling: expected waves, spins, membranes, diastole, separation or fsi; see study.cpp");
+        "study_coupling: expected waves, spins, membranes, diastole, separation, bar or fsi; see study.cpp");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
