@@ -14,4 +14,5 @@ else
   # shellcheck disable=SC2086
   files=$(git ls-files $folders | grep '\.cpp$')
 fi
+files=$(echo "$files" | grep -v '^segment/image_file.cpp$' || true)  # Debian's ITK refuses to be read by clang
 [ -z "$files" ] || echo "$files" | xargs -P 2 -n 4 clang-tidy -p build --quiet

@@ -5,7 +5,7 @@
         [--time 0.0198] [--valve 3,12,0.3] [--columns post_deflection_mm] [--course free_edge_radius_mm,0.0198] [--pictures docs/pictures/x]
 
 Reads the last view of each case (or the one nearest to --time). The regions are those of the leaflet's grid of elements
-(--grid: its divisions; every leaflet of the body has the same): attached, the two outer rows at the attachment; belly,
+(--grid: its divisions; every leaflet of the body has the same): attached, the two (--rows) outer rows at the attachment; belly,
 the middle third each way; commissure, the upper fifth of the sides; free edge, the two rows below it. Prints Markdown:
 mean von Mises stress and stretch of each region, weighted by the elements' reference areas, and the 99th percentile.
 --valve LEAFLETS,RADIUS,DISTANCE adds what the leaflets do together: the orifice, as common/metrics/orifice.hpp defines
@@ -49,13 +49,13 @@ def areas(mesh):
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
 
 
-def regions(count, divisions, half):
+def regions(count, divisions, half, rows):
     """Element masks by name; two triangles a cell of the grid, copies one after another."""
     n1, n2 = divisions
     cell = np.arange(count) // 2 % (n1 * n2)
     u, v = (cell % n1 + 0.5) / n1, (cell // n1 + 0.5) / n2
     side = (1 - u) if half else np.minimum(u, 1 - u)  # distance from an attached side, in widths of the grid
-    rim = np.minimum(side * n1, v * n2) < 2
+    rim = np.minimum(side * n1, v * n2) < rows
     middle = u < 1 / 3 if half else np.abs(u - 0.5) < 1 / 6
     return {"belly": middle & (np.abs(v - 0.5) < 1 / 6), "attached": rim & (v < 0.8), "commissure": (side < 0.2) & (v > 0.8),
             "free edge": (v * n2 > n2 - 2) & (side > 0.2)}
@@ -159,6 +159,7 @@ def main():
     parser.add_argument("--body", required=True)
     parser.add_argument("--grid", required=True)
     parser.add_argument("--half", action="store_true", help="the grid is half of a leaflet, from its middle")
+    parser.add_argument("--rows", type=int, default=2, help="of elements that count as attached")
     parser.add_argument("--time", type=float)
     parser.add_argument("--valve", type=lambda text: [float(word) for word in text.split(",")])
     parser.add_argument("--columns", default="")
@@ -181,7 +182,7 @@ def main():
         path = view_of(folder, options.body, options.time)
         mesh = read(path)
         weight = areas(mesh)
-        masks = regions(len(weight), divisions, options.half)
+        masks = regions(len(weight), divisions, options.half, options.rows)
         for field, label in (("von_mises_kPa", "von Mises stress, kPa"), ("stretch", "largest stretch")):
             values = vtk_to_numpy(mesh.GetCellData().GetArray(field))
             means = [np.average(values[m], weights=weight[m]) for m in masks.values()]

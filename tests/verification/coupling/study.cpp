@@ -1,6 +1,7 @@
 // study_coupling: the benchmarks of docs/verification/coupling.md that take longer than a test may.
 //   study_coupling fsi <cells across> <mean mm/s> <solid density g/mm3> <shear Pa> <end s> [key=value ...]
-//   study_coupling waves | spins | membranes <steps> | diastole <h mm> <end s>
+//   study_coupling waves | spins | membranes <steps> | diastole <h mm> <end s> | separation <h mm> <end s>
+//   study_coupling bar <cells across> <kernel> <end s>
 //     keys: length, ramp, kernel, sampled (0, 1), along, across, wall, csv (file)
 #include <chrono>
 #include <cstdio>
@@ -144,7 +145,12 @@ int main(int argc, char** argv) {
     if (argc > 2 && std::string(argv[1]) == "membranes") return membranes(std::stol(argv[2]));
     if (argc > 3 && std::string(argv[1]) == "diastole")
       return study_diastole(std::stod(argv[2]), std::stod(argv[3]));
-    throw InputError("study_coupling: expected waves, spins, membranes, diastole or fsi; see study.cpp");
+    if (argc > 3 && std::string(argv[1]) == "separation")
+      return study_separation(std::stod(argv[2]), std::stod(argv[3]));
+    if (argc > 4 && std::string(argv[1]) == "bar")
+      return study_bar(std::stoi(argv[2]), argv[3], std::stod(argv[4]));
+    throw InputError(
+        "study_coupling: expected waves, spins, membranes, diastole, separation, bar or fsi; see study.cpp");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

@@ -19,7 +19,8 @@ struct ValveRig {
   std::unique_ptr<coupling::ImmersedFlow> system;
   double time_s = 0;
 
-  explicit ValveRig(double h = 1.5) {
+  explicit ValveRig(double h = 1.5) : ValveRig(h, {{2e5, 0.6 * h}, 1.3 * h}) {}
+  ValveRig(double h, const coupling::Spacing& spacing) {
     constexpr double radius = 12.5;
     SyntheticValve valve;
     valve.spacing_mm = 0.5 * h;
@@ -30,9 +31,9 @@ struct ValveRig {
     flow->solids().set_lumen([](const Vec3& x) { return std::hypot(x.x(), x.y()) - radius; });
     const int ring = flow->solids().add_body("ring");
     flow->solids().mark_segments(ring, mesh.shell.reference, mesh.attachment, 0.8 * h);
-    auto shell = std::make_unique<coupling::ImmersedShell>(
-        MPI_COMM_SELF, pericardial_shell(mesh), mesh.shell.reference, mesh.shell.reference, mesh.attached,
-        mesh.leaflet, coupling::Spacing{{2e5, 0.6 * h}, 1.3 * h});
+    auto shell = std::make_unique<coupling::ImmersedShell>(MPI_COMM_SELF, pericardial_shell(mesh),
+                                                           mesh.shell.reference, mesh.shell.reference,
+                                                           mesh.attached, mesh.leaflet, spacing);
     system =
         std::make_unique<coupling::ImmersedFlow>(*flow, std::move(shell), coupling::ImmersedFlowSettings{});
   }
