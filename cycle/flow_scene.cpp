@@ -59,6 +59,9 @@ void run_flow_scene(StageContext& context) {
   const fluid::Grid& grid = scene.flow().grid();
   log::info("fluid: {} x {} x {} cells of {} mm", grid.cells[scene.frame().solver_axis(0)],
             grid.cells[scene.frame().solver_axis(1)], grid.cells[scene.frame().solver_axis(2)], grid.h);
+  if (scene.given_step_s() > scene.stable_s())
+    log::warn("fluid.step_s is {} s; fluid.cfl and the viscosity allow {:.3g} s: the run may become unstable",
+              scene.given_step_s(), scene.stable_s());
   record_files(context);
   if (const auto before = state::resume(context)) {
     scene.load(*before);
@@ -111,7 +114,7 @@ Estimate estimate_flow_scene(const Case& scene, int ranks) {
   built.step();
   const double cells = static_cast<double>(built.flow().grid().all_cells());
   const bool rk3 = scene.text("fluid.time_scheme") == "rk3";
-  const double step = scene.real("fluid.step_s") > 0 ? scene.real("fluid.step_s") : built.limit_s();
+  const double step = built.given_step_s() > 0 ? built.given_step_s() : built.stable_s();
   const double steps = std::max(built.end_s() / step, double(scene.integer("fluid.history_rows")));
   return {
       steps * cells * 0.06e-6 * (rk3 ? 3 : 1) / (ranks > 1 ? 1.7 : 1.0), 100 + 2e-4 * cells,

@@ -316,7 +316,10 @@ Obstacles::Load Obstacles::load_on(fluid::Flow& flow, const Frame& frame, const 
   const Vec3 place = frame.to_solver(about);
   if (obstacle.wall) {
     const fluid::WallForce::Sum sum = obstacle.wall->of(flow, place);
-    return {frame.to_case(sum.force), frame.to_case(sum.moment)};
+    const bool alone = std::count_if(obstacles_.begin(), obstacles_.end(),
+                                     [](const Obstacle& o) { return o.body == fluid::Solids::wall; }) == 1;
+    const Vec3 force = alone ? flow.solids().force_on(fluid::Solids::wall) : sum.force;
+    return {frame.to_case(force), frame.to_case(sum.moment)};
   }
   Load load{frame.to_case(flow.solids().force_on(obstacle.body)),
             frame.to_case(flow.solids().moment_on(obstacle.body, place))};

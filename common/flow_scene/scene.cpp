@@ -172,22 +172,25 @@ void FlowScene::start(const Case& scene) {
 }
 
 void FlowScene::set_force(double time_s) {
-  if (forced_ && !force_.changes()) return;
+  if (forced_ && !force_.changes() && !obstacles_.move()) return;
   const fluid::Slab& slab = flow_->slab();
   for (int d = 0; d < 3; ++d) {
     const int of_case = frame().case_axis(d);
     for (int k = 0; k < (d == 2 ? slab.w_planes() : slab.planes); ++k) {
       for (int j = 0; j < slab.grid.cells[1]; ++j) {
-        for (int i = 0; i < slab.grid.cells[0]; ++i)
-          flow_->force()[d](i, j, k) =
-              force_.component(of_case, frame().to_case(slab.grid.position(d, i, j, k + slab.first)), time_s);
+        for (int i = 0; i < slab.grid.cells[0]; ++i) {
+          // None in obstacles: it would count as a force of the fluid on them.
+          const bool fluid = flow_->solids().owner(d, i, j, k) == 0;
+          const Vec3 x = frame().to_case(slab.grid.position(d, i, j, k + slab.first));
+          flow_->force()[d](i, j, k) = fluid ? force_.component(of_case, x, time_s) : 0;
+        }
       }
     }
   }
   forced_ = true;
 }
 
-double FlowScene::limit_s() const {
+double FlowScene::stable_s() const {
   const fluid::FlowParameters& p = flow_->parameters();
   const double h = flow_->grid().h;
   double nu = p.implicit_viscosity ? 0 : p.viscosity / p.density;
@@ -197,12 +200,17 @@ double FlowScene::limit_s() const {
   double limit = end_s_;
   if (nu > 0) limit = std::min(limit, (rk3_ ? 0.18 : 1.0 / 14) * h * h / nu);
   if (speed > 0) limit = std::min(limit, cfl_ * h / speed);
-  return step_s_ > 0 ? std::min(limit, 1.2 * step_s_) : std::min(limit, 1e-3 * end_s_);
+  return limit;
+}
+
+double FlowScene::next_step_s() const {
+  if (given_step_s_ > 0) return given_step_s_;
+  return std::min(stable_s(), step_s_ > 0 ? 1.2 * step_s_ : 1e-3 * end_s_);
 }
 
 void FlowScene::step() {
   const double row_s = end_s_ * static_cast<double>(row_ + 1) / static_cast<double>(rows_);
-  const double remaining = row_s - time_s_, most = given_step_s_ > 0 ? given_step_s_ : limit_s();
+  const double remaining = row_s - time_s_, most = next_step_s();
   const double count = std::max(1.0, std::ceil(remaining / most - 1e-9));
   const double dt = remaining / count, start = time_s_;
   const auto prescribe = [&](double time) {

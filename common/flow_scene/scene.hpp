@@ -39,7 +39,8 @@ class FlowScene {
   const Frame& frame() const { return sides_.frame(); }
   const Obstacles& obstacles() const { return obstacles_; }
 
-  double limit_s() const;  ///< what cfl, viscosity and the last step allow for the next
+  double stable_s() const;                               ///< what cfl and viscosity allow now
+  double given_step_s() const { return given_step_s_; }  ///< 0: none
   /// Collective; NumericalFailure when the velocity is not finite.
   void step();
 
@@ -58,6 +59,7 @@ class FlowScene {
 
  private:
   Measured measured() { return {*flow_, sides_.frame(), obstacles_, time_s_, step_s_}; }
+  double next_step_s() const;
   void set_force(double time_s);
   void start(const Case& scene);
 

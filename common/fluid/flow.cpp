@@ -275,8 +275,7 @@ void Flow::add_impulse(const FaceField& force, double dt) {
 }
 
 void Flow::penalise(double dt) {
-  if (solids_.interpolated()) fill_ghosts();
-  solids_.penalise(dt, parameters_.penalisation_s, velocity_);
+  solids_.penalise(dt, parameters_.penalisation_s, next_, velocity_);  // next_: before the prediction
 }
 
 void Flow::fill_source(int k, double per_dt, double* plane) {

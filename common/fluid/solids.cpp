@@ -103,33 +103,43 @@ void Solids::find_ghosts(const Distance& distance) {
   for (int d = 0; d < 3; ++d) {
     ghosts_[d].clear();
     const auto inside = [&](int i, int j, int k) { return distance(grid.position(d, i, j, k)) < 0; };
-    const auto interpolate = [&](Ghost& ghost, const Vec3& x) {
+    // Component e at a point; false where one of its faces is not in the lumen, or out of the slab's reach
+    // from the plane k.
+    const auto read_at = [&](int e, const Vec3& x, int k, Ghost& ghost) {
+      const Vec3 at = (x - grid.position(e, 0, 0, slab_.first)) / h;
+      std::array<int, 3> corner;
+      for (int f = 0; f < 3; ++f) corner[f] = static_cast<int>(std::floor(at[f]));
+      for (int f = 0; f < 2; ++f)
+        if (corner[f] < -1 || corner[f] >= grid.cells[f]) return false;
+      if (corner[2] < k - ghosts || corner[2] > k + ghosts - 1 || corner[2] >= slab_.planes + ghosts - 1)
+        return false;
+      for (int c = 0; c < 8; ++c) {
+        double& weight = ghost.weight[e][c] = 1;
+        std::array<int, 3> of = corner;
+        for (int f = 0; f < 3; ++f) {
+          const int up = c >> f & 1;
+          weight *= up ? at[f] - corner[f] : 1 - (at[f] - corner[f]);
+          of[f] += up;
+        }
+        if (!(distance(grid.position(e, of[0], of[1], of[2] + slab_.first)) < 0)) return false;
+      }
+      ghost.corner[e] = shape.index(corner[0], corner[1], corner[2]);
+      return true;
+    };
+    const auto interpolate = [&](Ghost& ghost, const Vec3& x, int k) {
       const Vec3 g = gradient(x);
       const double size = g.norm();
       if (!(size > 0.1)) return false;
+      const Vec3 n = g / size;
       const double s = std::max(0.0, distance(x) / size);
       for (double delta = h; delta < 2.4 * h; delta += 0.25 * h) {
-        const Vec3 at = (x - (s + delta) / size * g - grid.position(d, 0, 0, slab_.first)) / h;
-        std::array<int, 3> corner;
-        bool valid = true;
+        const Vec3 to = x - (s + delta) * n;
+        if (!read_at(0, to, k, ghost) || !read_at(1, to, k, ghost) || !read_at(2, to, k, ghost)) continue;
+        const double ratio = s / delta;
         for (int e = 0; e < 3; ++e) {
-          corner[e] = static_cast<int>(std::floor(at[e]));
-          const int last = e == 2 ? slab_.planes + ghosts - 1 : grid.cells[e];
-          valid = valid && corner[e] >= (e == 2 ? -ghosts : -1) && corner[e] < last;
+          const double share = (e == d ? -ratio : 0) + (ratio + ratio * ratio) * n[d] * n[e];
+          for (double& weight : ghost.weight[e]) weight *= share;
         }
-        for (int c = 0; c < 8 && valid; ++c) {
-          double weight = -s / delta;
-          std::array<int, 3> of = corner;
-          for (int e = 0; e < 3; ++e) {
-            const int up = c >> e & 1;
-            weight *= up ? at[e] - corner[e] : 1 - (at[e] - corner[e]);
-            of[e] += up;
-          }
-          ghost.weight[c] = weight;
-          valid = inside(of[0], of[1], of[2] + slab_.first);
-        }
-        if (!valid) continue;
-        ghost.corner = shape.index(corner[0], corner[1], corner[2]);
         return true;
       }
       return false;
@@ -143,8 +153,8 @@ void Solids::find_ghosts(const Distance& distance) {
           if (!(inside(i - 1, j, z) || inside(i + 1, j, z) || inside(i, j - 1, z) || inside(i, j + 1, z) ||
                 inside(i, j, z - 1) || inside(i, j, z + 1)))
             continue;
-          Ghost ghost{shape.index(i, j, k), 0, {}};
-          if (interpolate(ghost, grid.position(d, i, j, z))) {
+          Ghost ghost{shape.index(i, j, k), {}, {}};
+          if (interpolate(ghost, grid.position(d, i, j, z), k)) {
             ghosts_[d].push_back(ghost);
           } else {
             ++still_ghosts_;
@@ -269,7 +279,7 @@ void Solids::list_faces() {
   listed_ = true;
 }
 
-void Solids::penalise(double dt, double eta, FaceField& velocity) {
+void Solids::penalise(double dt, double eta, const FaceField& last, FaceField& velocity) {
   prepare();
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   std::fill(moment_.begin(), moment_.end(), Vec3::Zero());
@@ -279,7 +289,7 @@ void Solids::penalise(double dt, double eta, FaceField& velocity) {
     double* u = velocity[d].data().data();
     double lost = 0;
     for (const Ghost& ghost : ghosts_[d]) {
-      const double after = keep * (u[ghost.index] + ratio * target(ghost, u));
+      const double after = keep * (u[ghost.index] + ratio * target(ghost, last));
       lost += u[ghost.index] - after;
       u[ghost.index] = after;
     }
@@ -309,7 +319,7 @@ void Solids::record(double eta, const FaceField& before, const FaceField& veloci
   for (int d = 0; d < 3; ++d) {
     const double* u = velocity[d].data().data();
     double of_wall = 0;
-    for (const Ghost& ghost : ghosts_[d]) of_wall += u[ghost.index] - target(ghost, before[d].data().data());
+    for (const Ghost& ghost : ghosts_[d]) of_wall += u[ghost.index] - target(ghost, before);
     for (const Run& run : walls_[d]) {
       for (int i = 0; i < run.count; ++i) of_wall += u[run.first + i];
     }

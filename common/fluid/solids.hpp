@@ -10,10 +10,14 @@
 // does not stand still but carries the flow on smoothly through the wall (ghost faces; Mittal et al. 2008, J.
 // Comput. Phys. 227): with s the distance of the face to the wall and n the direction inwards,
 //
-//   U = -(s / delta) u(x + (s + delta) n),   u linear between its faces,
+//   U_t = -(s / delta) u_t(x + (s + delta) n),   U_n = (s / delta)^2 u_n(x + (s + delta) n),
 //
-// delta the first of 1, 1.25, ... 2.25 h whose eight faces all lie inside the lumen; U = 0 where there is
-// none (narrow gaps). Second order at the wall for the velocity; bodies stay sharp.
+// along the wall and normal to it, u linear between its faces, delta the first of 1, 1.25, ... 2.25 h whose
+// faces all lie inside the lumen; U = 0 where there is none (narrow gaps). Second order at the wall for the
+// velocity; bodies stay sharp. The normal part, because flow along the normal grows with the square of the
+// distance: continued linearly it leaks through the wall. u is that of the last step's end: with the
+// predicted velocity, in which the old pressure drives a leak on, leaks that answer themselves with less than
+// -1/3 grow (docs/decisions/fluid.md).
 //
 // A face belongs to one body, the first that claims it; body 0 is the lumen's wall.
 #pragma once
@@ -74,9 +78,9 @@ class Solids {
   /// Faces of this rank that belong to the body, all components.
   long faces(int body) const;
 
-  /// (Interpolated wall: the ghosts of `velocity` must be valid.) Penalises all owned faces with ratio =
-  /// dt/eta, and keeps the momentum taken from the fluid for force_on.
-  void penalise(double dt, double eta, FaceField& velocity);
+  /// Penalises all owned faces with ratio = dt/eta, and keeps the momentum taken from the fluid for force_on.
+  /// last: the velocity at the end of the last step, with valid ghosts (read for interpolated walls only).
+  void penalise(double dt, double eta, const FaceField& last, FaceField& velocity);
   /// Ghost faces of the interpolated wall on this rank, and those of them that found no place to interpolate
   /// at.
   long ghost_faces() const;
@@ -89,7 +93,7 @@ class Solids {
   /// Ghost faces take theirs from `velocity`, whose ghosts must be valid.
   template <class Each>
   void each_face(int d, const FaceField& velocity, const Each& each) const {
-    for (const Ghost& ghost : ghosts_[d]) each(ghost.index, target(ghost, velocity[d].data().data()));
+    for (const Ghost& ghost : ghosts_[d]) each(ghost.index, target(ghost, velocity));
     for (const Run& run : walls_[d]) {
       for (int i = 0; i < run.count; ++i) each(run.first + i, 0.0);
     }
@@ -118,14 +122,17 @@ class Solids {
     int count;
   };
   struct Ghost {  // a face of the first layer beyond the wall, and where it interpolates
-    std::ptrdiff_t index, corner;
-    std::array<double, 8> weight;  ///< of the faces from `corner` on, x fastest; -s / delta included
+    std::ptrdiff_t index;
+    std::array<std::ptrdiff_t, 3> corner;         ///< of each component
+    std::array<std::array<double, 8>, 3> weight;  ///< of its faces from `corner` on, x fastest
   };
-  double target(const Ghost& ghost, const double* u) const {
+  double target(const Ghost& ghost, const FaceField& velocity) const {
     double sum = 0;
-    for (int c = 0; c < 8; ++c)
-      sum += ghost.weight[c] *
-             u[ghost.corner + (c & 1) + (c >> 1 & 1) * slab_.stride_y + (c >> 2) * slab_.stride_z];
+    for (int e = 0; e < 3; ++e) {
+      const double* u = velocity[e].data().data() + ghost.corner[e];
+      for (int c = 0; c < 8; ++c)
+        sum += ghost.weight[e][c] * u[(c & 1) + (c >> 1 & 1) * slab_.stride_y + (c >> 2) * slab_.stride_z];
+    }
     return sum;
   }
   void find_ghosts(const Distance& distance);

@@ -10,8 +10,9 @@
 //   (1 + cos(pi d / h)) / (2 h) |grad d| dV,
 // whose error is of second order (a sphere of radius R: 0.13 (h/R)^2 of the area too much).
 //
-// For interpolated walls (solids.hpp), where the momentum that held faces take out of the fluid is not the
-// body's alone: flow that is carried on through the wall takes its part. With staircases, Solids::force_on.
+// For walls of which several bodies have a share; otherwise the momentum that held faces take
+// (Solids::force_on) is nearer on coarse grids: the shear stress needs 4.5 cells of the flow off the wall,
+// and the drag of a cylinder of 10 cells at Re 20 comes out 24 % too small by tractions, 3 % by momentum.
 #pragma once
 
 #include "fluid/flow.hpp"
