@@ -1,6 +1,7 @@
 // valsalva-cycle: the valve beats. Blood on a staggered grid, the leaflets as immersed shells, the left heart
 // and the arteries as 0D models at the two ends. Parent: deploy, or mesher where the scene has no device.
-// A scene of [[body]] entries without [fluid] is advanced alone, without a parent (dry.hpp).
+// A scene of [[body]] entries without [fluid] (dry.hpp), or of fluid in a box (flow_scene.hpp), is advanced
+// alone, without a parent.
 //
 //   valsalva-cycle CASE.toml
 //   mpirun -np 2 valsalva-cycle CASE.toml --fidelity standard
@@ -16,6 +17,7 @@
 #include "core/stage.hpp"
 #include "core/units.hpp"
 #include "dry.hpp"
+#include "flow_scene.hpp"
 #include "results.hpp"
 #include "scene/scene.hpp"
 #include "state/checkpoint.hpp"
@@ -51,6 +53,7 @@ void say_scene(const Inputs& in, const Parameters& p, const Simulation& simulati
 }
 
 void run(StageContext& context) {
+  if (is_flow_scene(context.scene)) return run_flow_scene(context);
   if (is_dry(context.scene)) return run_dry(context);
   omp_set_num_threads(1);  // the ranks share the work; results do not depend on it
   const Parameters p = read_parameters(context.scene);
@@ -86,6 +89,7 @@ void run(StageContext& context) {
 }
 
 Estimate estimate(const Case& scene, int ranks) {
+  if (is_flow_scene(scene)) return estimate_flow_scene(scene, ranks);
   if (is_dry(scene)) return estimate_dry(scene);
   const Parameters p = read_parameters(scene);
   // docs/cycle.md: mean step of a beat about 3e-5 h^1.4, one core 0.06 microseconds a cell and step, and
@@ -100,6 +104,7 @@ Estimate estimate(const Case& scene, int ranks) {
 }
 
 void check(const Case& scene) {
+  if (is_flow_scene(scene)) return check_flow_scene(scene);
   if (is_dry(scene)) return check_dry(scene);
   const Parameters p = read_parameters(scene);
   if (!scene.has("fluid"))
@@ -115,14 +120,15 @@ void check(const Case& scene) {
 
 int main(int argc, char** argv) {
   valsalva::structure::wait_passively(argv);
-  return valsalva::stage_main(argc, argv,
-                              {"cycle",
-                               "The valve beats: blood, leaflets, heart and arteries",
-                               "mpirun -np 2 valsalva-cycle CASE.toml --fidelity standard",
-                               valsalva::declare_all,
-                               {"cycle", "fluid", "circulation", "device", "native", "body", "nodes",
-                                "support", "load", "tie", "contact_pair", "contact", "dynamics", "probe"},
-                               run,
-                               estimate,
-                               check});
+  return valsalva::stage_main(
+      argc, argv,
+      {"cycle",
+       "The valve beats: blood, leaflets, heart and arteries",
+       "mpirun -np 2 valsalva-cycle CASE.toml --fidelity standard",
+       valsalva::declare_all,
+       {"cycle", "fluid", "circulation", "device", "native", "body", "nodes", "support", "load", "tie",
+        "contact_pair", "contact", "dynamics", "probe", "boundary", "obstacle", "flow_probe"},
+       run,
+       estimate,
+       check});
 }

@@ -14,6 +14,7 @@
 #include "output.hpp"
 #include "scene/scene.hpp"
 #include "state/checkpoint.hpp"
+#include "state/parents.hpp"
 #include "structure/threads.hpp"
 
 namespace {
@@ -197,7 +198,8 @@ void run(StageContext& context) {
   if (mpi::size(context.comm) > 1 && mpi::rank(context.comm) == 0)
     log::info("deploy works on one rank with threads; the other ranks repeat it");
   const Parameters p = read_parameters(context.scene);
-  Run deployment(context, read_inputs(context.parent_state("crimp"), context.parent_state("mesher"), p), p);
+  const auto parents = state::parent_states(context, {"crimp", "mesher"});
+  Run deployment(context, read_inputs(parents[0], parents[1], p), p);
   if (deployment.go()) deployment.finish();
 }
 

@@ -1,31 +1,62 @@
 """make extremes, structural part: values pushed until accuracy, then the solution, is lost.
 
-    python3 pipelines/extremes_structure.py [OUT] [--crimp]    needs build/bin/valsalva-cycle (and -stent, -crimp)
+    python3 pipelines/extremes_structure.py [OUT] [--only PART ...]     needs build/bin/valsalva-cycle (and -stent, -crimp)
 
 For each value: the exit code (0 solved; 2 refused as input; 3 stopped with the last good state), how far the result is
 from a closed form or from the same scene by other means, whether any output holds a NaN, whether a state was left, and
-the program's last message. Writes OUT/structure-extremes.csv (docs/results) and runs/extremes/structure.md.
+the program's last message: OUT/structure-extremes.csv (docs/results). From these rows, for every series of values: the
+last one before the error exceeds 2 %, the last one before the run stops, and how it stops:
+OUT/structure-extremes-limits.csv. With --only (names of the functions here) both go to runs/extremes instead.
 """
 
-import csv
+import json
 import math
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import structure_runs as runs
 from tradeoff_structure import SOLID, TISSUE, strip, value
 
 FOLDER = runs.ROOT / "runs" / "extremes"
+ACCURATE = 0.02
 ROWS = []
 
 
-def note(extreme, at, result, error=None, remark=""):
-    ROWS.append({"extreme": extreme, "value": at, "exit": "time out" if result["exit"] is None else result["exit"],
-                 "error": "" if error is None else f"{error:.2e}", "nan": "yes" if result["nan"] else "no",
+def note(extreme, series, at, result, error=None, remark=""):
+    """A value of a series that is pushed from harmless to extreme; series None: a row that is not part of one."""
+    ROWS.append({"extreme": extreme, "series": series or "", "value": at, "exit": "time out" if result["exit"] is None else result["exit"],
+                 "error": "" if error is None or result["exit"] else f"{error:.2e}", "nan": "yes" if result["nan"] else "no",
                  "state": "yes" if result["state"] else "no", "processor_s": f"{result['processor_s']:.1f}",
                  "remark": remark or (result["message"] if result["exit"] else "")})
-    print(ROWS[-1], flush=True)
+    row = ROWS[-1]
+    print(f"  {extreme}, {series or ''}, {at}: exit {row['exit']}, error {row['error'] or '-'}, nan {row['nan']}", flush=True)
+
+
+def limits():
+    """Of every series: where it stops being accurate, where it stops, and how."""
+    found = []
+    for extreme, series in dict.fromkeys((row["extreme"], row["series"]) for row in ROWS if row["series"]):
+        rows = [row for row in ROWS if (row["extreme"], row["series"]) == (extreme, series)]
+        solved = [row for row in rows if row["exit"] == 0]
+        stop = next((row for row in rows if row["exit"] != 0), None)
+        accurate, wrong = None, None
+        for row in solved:
+            if row["error"] and float(row["error"]) > ACCURATE:
+                wrong = row
+                break
+            if row["error"]:
+                accurate = row
+        found.append({"extreme": extreme, "series": series,
+                      "accurate until (error to 2 %)": accurate["value"] if accurate else "",
+                      "no longer at": f"{wrong['value']} (error {float(wrong['error']):.2g})" if wrong else "",
+                      "goes on until": solved[-1]["value"] if solved else "",
+                      "stops at": stop["value"] if stop else "does not stop",
+                      "how": f"exit {stop['exit']}, {'last state kept' if stop['state'] == 'yes' else 'nothing written'}: "
+                             f"{stop['remark']}" if stop else "exit 0",
+                      "nan": "yes" if any(row["nan"] == "yes" for row in rows) else "no"})
+    return found
 
 
 def run(scene, name, **options):
@@ -66,10 +97,10 @@ def fibre_strain():
         if wanted and math.exp(q) >= 0.999 * wanted[0]:
             while wanted and math.exp(q) >= 0.999 * wanted[0]:
                 wanted.pop(0)
-            note("fibre strain", f"stretch {stretch:.3f}, exp(Q) = {math.exp(q):.2g}", result, abs(force / exact - 1),
+            note("fibre strain", "fibres of a cube", f"stretch {stretch:.3f}, exp(Q) = {math.exp(q):.2g}", result, abs(force / exact - 1),
                  "force against the law without the cap at Q = 6")
     if result["exit"]:
-        note("fibre strain", f"towards {last:.3f}", result)
+        note("fibre strain", "fibres of a cube", f"towards {last:.3f}", result)
 
 
 def stiffness():
@@ -85,17 +116,17 @@ def stiffness():
     for factor in (1e3, 1e6, 1e9):
         result = tip(factor, factor)
         found = value(result, "tip")
-        note("stiffness C10", f"x {factor:g}, load too", result, None if found is None else abs(found / soft - 1),
+        note("stiffness C10", "load too", f"x {factor:g}", result, None if found is None else abs(found / soft - 1),
              "tip against that of the soft strip" if not result["exit"] else "")
     slope = value(tip(1, 1e-3), "tip")
     result = tip(1e3, 1)
     found = value(result, "tip")
-    note("stiffness C10", "x 1000, same load", result, None if found is None else abs(found / slope - 1),
+    note("stiffness C10", "same load", "x 1000", result, None if found is None else abs(found / slope - 1),
          "tip against the soft strip's at a thousandth of the load" if not result["exit"] else "")
 
 
 def thickness():
-    for share in (0.1, 0.25, 1, 3, 5, 10):
+    for share in (1, 0.25, 0.1, 3, 5, 10):
         tips = {}
         for kind in ("hex27 mixed", "shell kirchhoff", "shell hinge"):
             scene = strip(kind, 2)
@@ -112,7 +143,7 @@ def thickness():
             tips[kind] = value(result, "tip") if result["exit"] == 0 else None
             solid = tips["hex27 mixed"]
             error = None if tips[kind] is None or solid is None or kind == "hex27 mixed" else abs(tips[kind] / solid - 1)
-            note("thickness", f"{100 * share:g} % of 0.4 mm, {kind}", result, error,
+            note("thickness", f"{kind}, {'thinner' if share <= 1 else 'thicker'}", f"{100 * share:g} %", result, error,
                  "tip against hex27, load with the cube" if error is not None else "")
 
 
@@ -145,14 +176,14 @@ def slivers():
         result = run(scene, name)
         found = value(result, "force")
         exact = exact or found
-        note("slivers" if height > 0 else "inverted start", f"height {height:g} of 1", result,
+        note("slivers", "down to reversed, statics", f"height {height:g} of 1", result,
              None if found is None or not exact or result["exit"] else abs(found / exact - 1),
              "force against the regular mesh" if not result["exit"] else "")
         if height >= 1e-6:
             sliver_mesh(FOLDER / (name + "_explicit") / "mesh.vtk", height)
             scene["dynamics"] = {"solver": "explicit", "end_s": 1e-5}
             result = run(scene, name + "_explicit", timeout_s=120)
-            note("slivers", f"height {height:g}, explicit, 10 us", result, None, "" if result["exit"] else "runs")
+            note("slivers", "explicit, 10 us", f"height {height:g} of 1", result, None, "" if result["exit"] else "runs")
 
 
 def inversion():
@@ -160,7 +191,7 @@ def inversion():
     for steps in (1, 20):
         result = run(cube(SOLID, -0.5, steps), f"inversion_{steps}")
         reached = value(result, "end")
-        note("inverted start", f"pushed to -0.5 in {steps} steps", result, None,
+        note("inverted start", f"pushed through itself in {steps} steps", "to stretch -0.5", result, None,
              f"last state at stretch {1 + reached:.3g}: {result['message']}" if reached is not None else "")
 
 
@@ -187,11 +218,19 @@ def pressure():
                      "dynamics": {"solver": "static", "load_steps": 40}}
             result = run(scene, f"pressure_{law_name.split()[0]}_{n}")
             rows = result.get("rows", [])
-            reached[n] = [float(next(v for k, v in row.items() if k.startswith("rise"))) for row in rows]
-            note("load 750 mmHg", f"{law_name}, {n} x {n}", result,
-                 abs(reached[8][-1] / reached[16][-1] - 1) if n == 16 and len(reached[8]) == len(reached[16]) > 0 else None,
-                 (f"{100.0 * len(rows) / 40:.0f} kPa in history; " if result["exit"] else
-                  "rise of 8 x 8 against 16 x 16" if n == 16 else "") + (result["message"] if result["exit"] else ""))
+            reached[n] = {round(100 * float(row["time_s"]), 6): float(row["rise_mm"]) for row in rows
+                          if float(row["time_s"]) > 0}
+            if n == 8:
+                coarse = result
+                continue
+            done = dict(result, exit=0, message="")  # of the loads that were solved
+            for load, fine in reached[16].items():
+                if load in (25.0, 37.5, 40.0, 42.5, 50.0, 75.0, 100.0) and load in reached[8]:
+                    note("load 750 mmHg", law_name, f"{load:g} kPa", done, abs(reached[8][load] / fine - 1),
+                         "rise of 8 x 8 against 16 x 16")
+            for result in (coarse, result):
+                if result["exit"]:
+                    note("load 750 mmHg", law_name, "towards 100 kPa", result)
 
 
 def struts():
@@ -214,7 +253,7 @@ def struts():
         result = run(scene, name)
         found = value(result, "tip")
         exact = 1e3 * 1e3 / (3 * 6e10 * 0.4 * 0.3 ** 3 / 12)  # P L^3/3EI, uN, mm, Pa
-        note("zero-length strut", f"{gap:g} mm", result, None if found is None else abs(found / exact - 1),
+        note("zero-length strut", "in a beam of 10 mm", f"{gap:g} mm", result, None if found is None else abs(found / exact - 1),
              "tip against P L^3/3EI" if not result["exit"] else "")
 
 
@@ -227,7 +266,7 @@ def time_step():
 
     right = let_go({"solver": "explicit"}, "step_reference")
     tip = value(right, "tip")
-    note("time step", "explicit, stable", right, 0.0, "reference")
+    note("time step", None, "explicit, stable", right, 0.0, "reference")
     stable = 2.6e-6  # of this mesh, found by the first refusal's message if it differs
     for factor in (10, 100, 1000):
         for label, dynamics in {
@@ -236,7 +275,7 @@ def time_step():
                 "implicit": {"solver": "implicit", "step_s": factor * stable}}.items():
             result = let_go(dynamics, f"step_{label.replace(', ', '_').replace(' ', '_')}_{factor}")
             found = value(result, "tip")
-            note("time step", f"{factor} x stable, {label}", result,
+            note("time step", label, f"{factor} x stable", result,
                  None if found is None or result["exit"] else abs(found / tip - 1),
                  "tip at 27 ms against the stable explicit run" if not result["exit"] else "")
 
@@ -247,32 +286,43 @@ def crimp():
     build = runs.BIN
     subprocess.run([build / "valsalva-stent", case, "--out", FOLDER / "stent"], check=True, stdout=subprocess.DEVNULL)
     state = max((FOLDER / "stent").glob("state_*.h5"))
-    for diameter in (5.7, 4.0, 3.0):
+    for diameter in (8.0, 5.7, 4.0):
         out = FOLDER / f"crimp_{diameter:g}"
+        start = time.monotonic()
         done = subprocess.run([build / "valsalva-crimp", case, "--from", state, "--out", out, "--set",
                                f"crimp.diameter_mm={diameter:g}"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True)
         summary = out / "summary.json"
-        text = summary.read_text() if summary.exists() else ""
-        note("crimp", f"{diameter:g} mm", {"exit": done.returncode, "nan": "nan" in text.lower(), "processor_s": 0.0,
-                                           "state": any(out.glob("state_*.h5")), "message": done.stdout.strip()[-300:]})
+        text = summary.read_text() if summary.exists() else "{}"
+        checks = json.loads(text).get("checks", {})
+        failed = "; ".join(f"{name} = {check['value']:.3g} (limit {check['limit']:.3g})" for name, check in checks.items()
+                           if not check["pass"])
+        result = {"exit": done.returncode, "nan": "nan" in text.lower(), "processor_s": time.monotonic() - start,
+                  "state": any(out.glob("state_*.h5")), "message": done.stdout.strip()[-300:]}
+        note("crimp", "smallest device of the tests", f"{diameter:g} mm", result, None,
+             "" if done.returncode else f"failed checks: {failed}" if failed else "all checks hold")
 
 
 def main():
-    words = [word for word in sys.argv[1:] if not word.startswith("--")]
-    out = Path(words[0]) if words else runs.ROOT / "docs" / "results"
-    for part in (fibre_strain, stiffness, thickness, slivers, inversion, pressure, struts, time_step):
+    words = sys.argv[1:]
+    only = words[words.index("--only") + 1:] if "--only" in words else []
+    words = words[:words.index("--only")] if "--only" in words else words
+    out = FOLDER if only else Path(words[0]) if words else runs.ROOT / "docs" / "results"
+    source = runs.provenance()
+    start = time.monotonic()
+    parts = (fibre_strain, stiffness, thickness, slivers, inversion, pressure, struts, time_step, crimp)
+    for part in parts:
+        if only and part.__name__ not in only:
+            continue
+        print(f"{part.__name__} ({time.monotonic() - start:.0f} s since the start)", flush=True)
         part()
-    if "--crimp" in sys.argv:
-        crimp()
-    out.mkdir(parents=True, exist_ok=True)
-    with open(out / "structure-extremes.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, ROWS[0].keys())
-        writer.writeheader()
-        writer.writerows(ROWS)
-    page = FOLDER / "structure.md"
-    page.write_text(runs.table(ROWS[0].keys(), [row.values() for row in ROWS]) + "\n")
-    print(f"written: {out / 'structure-extremes.csv'}, {page}")
+    if not ROWS:
+        sys.exit(f"error: no part is called {' or '.join(only)}; expected {', '.join(part.__name__ for part in parts)}")
+    runs.write_csv(out / "structure-extremes.csv", ROWS, source)
+    runs.write_csv(out / "structure-extremes-limits.csv", limits(), source)
+    for row in limits():
+        print("| " + " | ".join(str(cell)[:120] for cell in row.values()) + " |")
+    print(f"written: {out / 'structure-extremes.csv'}, structure-extremes-limits.csv after {time.monotonic() - start:.0f} s")
 
 
 if __name__ == "__main__":

@@ -72,6 +72,9 @@ def main(arguments):
             return run_case(chain, options.force, options.resume)
         if options.stage not in chain.stages():
             raise CaseError(f"{chain.path}: the scene has no stage '{options.stage}' (it has {', '.join(chain.stages())})")
+        if not chain.fidelity and (level := chain.fidelity_of_run(options.stage)):
+            chain.fidelity = level
+            print(f"fidelity {level}, as in {chain.folder} (FIDELITY=... for another)", flush=True)
         return run_stage(chain, options.stage, options.force, options.resume)
     except CaseError as error:
         print(f"error: {error}", file=sys.stderr)

@@ -7,7 +7,7 @@ packages="
   g++ cmake ninja-build pkg-config git python3
   libeigen3-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libtomlplusplus-dev libssl-dev libgtest-dev
   libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libpetsc-real-dev libfftw3-dev libblis4-serial
-  libcgal-dev libgmsh-dev libopenvdb-dev libboost-iostreams-dev libboost-system-dev libtbb-dev libblosc-dev
+  libcgal-dev libgmsh-dev libmuparser-dev libopenvdb-dev libboost-iostreams-dev libboost-system-dev libtbb-dev libblosc-dev
   libjemalloc-dev libinsighttoolkit5-dev libpng-dev zlib1g-dev
   libjs-three
   chromium python3-vtk9 python3-h5py python3-numpy python3-scipy python3-matplotlib clang-format clang-tidy

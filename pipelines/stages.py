@@ -103,6 +103,14 @@ class Chain:
         except (OSError, json.JSONDecodeError):
             return None
 
+    def fidelity_of_run(self, stage):
+        """The level at which the states that the stage starts from were made (without parents: its own); None when
+        there are none. A single stage goes on at this level unless another is asked for."""
+        for name in self.parents[stage] or [stage]:
+            if summary := self.summary(name):
+                return summary["fidelity"]
+        return None
+
     def is_up_to_date(self, stage):
         """Finished, with these parameters, from inputs whose content is still the same."""
         summary = self.summary(stage)

@@ -1,17 +1,52 @@
-"""Runs of structural scenes for the studies tradeoff_structure.py and extremes_structure.py: a scene is written as a case
-file, run by valsalva-cycle, and read back."""
+"""What the studies of the structure share: scenes are written as case files, run by valsalva-cycle and read back; results
+are written whole, with command, commit and machine."""
 
 import csv
+import io
 import json
 import math
 import os
 import resource
 import subprocess
+import sys
 import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(os.environ.get("VALSALVA_BIN", ROOT / "build" / "bin"))
+
+
+def provenance():
+    """Command, commit and machine of this run, and how busy the machine is."""
+    git = lambda *words: subprocess.run(["git", *words], cwd=ROOT, stdout=subprocess.PIPE, text=True).stdout.strip()
+    with open("/proc/cpuinfo") as file:
+        model = next((line.split(":")[1].strip() for line in file if line.startswith("model name")), "unknown")
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2 ** 30
+    script = Path(sys.argv[0]).resolve()
+    name = script.relative_to(ROOT) if script.is_relative_to(ROOT) else script.name
+    return {"command": " ".join(["python3", str(name)] + sys.argv[1:]),
+            "commit": git("rev-parse", "--short", "HEAD") + (" with changes" if git("status", "--porcelain", "-uno") else ""),
+            "machine": f"{os.cpu_count()} cores of {model}, {memory:.0f} GiB",
+            "load_at_start": round(os.getloadavg()[0], 2), "date": time.strftime("%Y-%m-%d %H:%M:%S")}
+
+
+def replace(path, text):
+    """Writes the whole file or nothing."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(text)
+    os.replace(partial, path)
+
+
+def write_csv(path, rows, source):
+    """Rows (dictionaries), after a line of comment that says where they come from."""
+    text = io.StringIO()
+    text.write("# " + "; ".join(f"{key}: {value}" for key, value in source.items()) + "\n")
+    writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    replace(path, text.getvalue())
 
 
 def toml(scene):

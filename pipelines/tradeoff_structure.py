@@ -6,12 +6,13 @@ Static: a strip of tissue (10 x 2 x 0.4 mm, neo-Hookean, K/mu = 20), clamped at 
 to a third of its length. Errors of the tip's displacement and of the von Mises stress on the upper side a quarter of the
 length from the clamp (the corner of the clamp itself is singular), against the finest hex27 mesh. Dynamic: the same strip
 let go under a sudden weight, tip at 27 ms, one mesh for all integrators; error against the explicit run with a tenth of
-the stable step. Time: processor time of the whole program (start, mesh, solution, output) on one thread, which other
-work on the machine disturbs less than wall time; the CSV has both.
+the stable step. Time: that of the whole program (start, mesh, solution, output) on one thread. The plot is over wall time,
+which means something on an idle machine only; the CSV has processor time too, which other work disturbs less.
 """
 
-import csv
+import os
 import sys
+import time
 from pathlib import Path
 
 import matplotlib
@@ -22,6 +23,7 @@ import matplotlib.pyplot as plt
 import structure_runs as runs
 
 FOLDER = runs.ROOT / "runs" / "tradeoff"
+START = time.monotonic()
 SHEAR = 3e5
 TISSUE = {"law": "neo-hookean", "law_parameters": [f"mu_Pa = {SHEAR:g}"], "density_g_per_mm3": 1.1e-3}
 SOLID = dict(TISSUE, volumetric="quadratic", bulk_modulus_kPa=20 * SHEAR / 1e3)
@@ -85,7 +87,9 @@ def row_of(part, kind, what, result, reference):
     for key, name in (("tip_mm", "tip_error"), ("stress_kPa", "stress_error")):
         right, found = reference.get(key), row[key]
         row[name] = "" if right is None or found is None else abs(found / right - 1)
-    print(row, flush=True)
+    percent = lambda e: f"{100 * e:.2g} %" if e != "" else "-"
+    print(f"{time.monotonic() - START:5.0f} s  {part}, {kind}, {what}: exit {row['exit']}, {row['wall_s']:.2f} s, tip "
+          f"{percent(row['tip_error'])} off, stress {percent(row['stress_error'])} off", flush=True)
     return row
 
 
@@ -110,32 +114,34 @@ def dynamic_study():
     return rows
 
 
-def write(rows, out):
-    out.mkdir(parents=True, exist_ok=True)
-    with open(out / "structure-tradeoff.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0].keys())
-        writer.writeheader()
-        writer.writerows(rows)
-    figure, axes = plt.subplots(1, 3, figsize=(15, 5))
-    for axis, part, error, title in ((axes[0], "static", "tip_error", "static: tip displacement"),
-                                     (axes[1], "static", "stress_error", "static: stress at a quarter length"),
-                                     (axes[2], "dynamic", "tip_error", "dynamic: tip at 27 ms")):
+def write(rows, out, source):
+    runs.write_csv(out / "structure-tradeoff.csv", rows, source)
+    figure, axes = plt.subplots(2, 2, figsize=(13, 10))
+    for axis, part, error, title in ((axes[0, 0], "static", "tip_error", "static: tip displacement"),
+                                     (axes[0, 1], "static", "stress_error", "static: stress at a quarter length"),
+                                     (axes[1, 0], "dynamic", "tip_error", "dynamic: tip at 27 ms"),
+                                     (axes[1, 1], "dynamic", "stress_error", "dynamic: stress at 27 ms")):
         axis.set_prop_cycle(color=plt.cm.tab20.colors)
         for kind in dict.fromkeys(row["kind"] for row in rows if row["part"] == part):
-            line = [(row["processor_s"], row[error]) for row in rows
+            line = [(row["wall_s"], row[error]) for row in rows
                     if row["part"] == part and row["kind"] == kind and row[error] not in ("", 0)]
             if line:
                 axis.loglog(*zip(*line), "o-", label=kind, markersize=4, linewidth=1)
-        axis.set(title=title, xlabel="processor time, s", ylabel="relative error")
+        axis.set(title=title, xlabel="wall time, s", ylabel="relative error")
         axis.grid(True, which="both", alpha=0.3)
         axis.legend(fontsize=7)
     figure.tight_layout()
-    figure.savefig(out / "structure-tradeoff.png", dpi=110)
-    print(f"written: {out / 'structure-tradeoff.csv'}, {out / 'structure-tradeoff.png'}")
+    partial = out / "structure-tradeoff.partial.png"
+    figure.savefig(partial, dpi=110)
+    os.replace(partial, out / "structure-tradeoff.png")
+    print(f"written: {out / 'structure-tradeoff.csv'}, {out / 'structure-tradeoff.png'} after {time.monotonic() - START:.0f} s")
 
 
 def main():
-    write(static_study() + dynamic_study(), Path(sys.argv[1]) if len(sys.argv) > 1 else runs.ROOT / "docs" / "results")
+    source = runs.provenance()
+    rows = static_study() + dynamic_study()
+    write(rows, Path(sys.argv[1]) if len(sys.argv) > 1 else runs.ROOT / "docs" / "results",
+          source)
 
 
 if __name__ == "__main__":

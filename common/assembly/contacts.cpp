@@ -113,6 +113,7 @@ class Contacts {
     contact::BodyPairSettings pair;
     pair.distance_mm = e_.real("distance_mm");
     pair.friction = e_.real("friction");
+    pair.even = pair.friction > 0;  // bumps of the normal forces would be as large as it
     candidates.set_pair(one.name, other.name, pair);
     const auto law = e_.text("law") == "penalty" ? contact::Law::penalty : contact::Law::barrier;
     auto term = std::make_shared<contact::BodyContact>(std::move(candidates), law, e_.real("slip_share"),

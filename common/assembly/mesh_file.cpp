@@ -259,10 +259,11 @@ class GmshReader {
 
   /// A node between others belongs to the groups that hold all of them.
   void add_to_groups(const std::vector<int>& around, int node) {
-    for (auto& [name, nodes] : mesh_.groups)
-      if (std::all_of(around.begin(), around.end(),
-                      [&](int a) { return std::find(nodes.begin(), nodes.end(), a) != nodes.end(); }))
-        nodes.push_back(node);
+    for (auto& group : mesh_.groups) {
+      std::vector<int>& nodes = group.second;
+      const auto holds = [&](int a) { return std::find(nodes.begin(), nodes.end(), a) != nodes.end(); };
+      if (std::all_of(around.begin(), around.end(), holds)) nodes.push_back(node);
+    }
   }
 
   static std::vector<Vec3> coordinates_of(int type) {

@@ -30,14 +30,11 @@ void BodyContact::begin_step(const structure::Configuration& now, double) {
   if (!candidates_.any_friction()) return;
   find_active(now.x);
   std::vector<PairFriction*> pairs;
-  std::vector<double> normal_force;
   for (auto& chunk : active_)
     for (Active& pair : chunk) {
-      if (pair.friction.coefficient <= 0) continue;
-      pairs.push_back(&pair.friction);
-      normal_force.push_back(pair.at.pressure);
+      if (pair.friction.coefficient > 0) pairs.push_back(&pair.friction);
     }
-  friction_.accept(std::move(pairs), normal_force, now.x);
+  friction_.accept(pairs, now.x);
 }
 
 void BodyContact::find_active(const Points& x, const std::vector<FeaturePair>& pairs, PairKind kind,
@@ -50,7 +47,8 @@ void BodyContact::find_active(const Points& x, const std::vector<FeaturePair>& p
     const std::size_t end = std::min(pairs.size(), static_cast<std::size_t>(c + 1) * chunk_size);
     for (std::size_t i = static_cast<std::size_t>(c) * chunk_size; i < end; ++i) {
       const FeaturePair& pair = pairs[i];
-      const Nearest near = nearest(kind, places(x, pair.node));
+      const std::array<Vec3, 4> place = places(x, pair.node);
+      const Nearest near = nearest(kind, place);
       const double d = near.distance, h = pair.contact_distance_mm;
       if (d >= h) continue;
       own.push_back({kind,
@@ -62,9 +60,53 @@ void BodyContact::find_active(const Points& x, const std::vector<FeaturePair>& p
                      pair.modulus_area_uN,
                      normal_pressure(law_, pair.modulus_area_uN, d, h),
                      {}});
-      if (pair.friction > 0) own.back().friction = friction_.at(kind, pair, x, near, own.back().at.pressure);
+      const std::size_t whole = own.size() - 1;
+      Vec3 push = own.back().at.pressure * near.direction;
+      if (pair.even) push += add_parts(kind, pair, place, own);
+      if (pair.friction > 0) own[whole].friction = friction_.at(kind, pair, x, near, push);
     }
   }
+}
+
+Vec3 BodyContact::add_parts(PairKind kind, const FeaturePair& pair, const std::array<Vec3, 4>& x,
+                            std::vector<Active>& own) const {
+  const double h = pair.contact_distance_mm;
+  Vec3 push = Vec3::Zero();
+  const auto add = [&](int point, int a, int b, bool point_first, double share) {
+    if (share == 0) return;
+    const Nearest near = point_segment(x, point, a, b, point_first);
+    if (near.distance >= h) return;
+    Pressure at = normal_pressure(law_, pair.modulus_area_uN, near.distance, h);
+    at.energy *= share;
+    at.pressure *= share;
+    at.stiffness *= share;
+    push += at.pressure * near.direction;
+    own.push_back({kind,
+                   pair.node,
+                   near.weight,
+                   near.direction,
+                   near.distance,
+                   h,
+                   pair.modulus_area_uN,
+                   at,
+                   {},
+                   share,
+                   false});
+  };
+  if (kind == PairKind::point_triangle) {
+    const Face& face = candidates_.mesh().faces()[pair.second];
+    for (int k = 0; k < 3; ++k) {
+      add(0, 1 + k, 1 + (k + 1) % 3, true, face.edge_share[k]);
+      add(0, 1 + k, 1 + k, true, face.vertex_share[k]);
+    }
+    return push;
+  }
+  for (int k = 0; k < 2; ++k) {
+    add(k, 2, 3, true, -0.5);
+    add(2 + k, 0, 1, false, -0.5);
+    for (int other = 2; other < 4; ++other) add(k, other, other, true, 0.25);
+  }
+  return push;
 }
 
 void BodyContact::find_active(const Points& x) const {
@@ -81,6 +123,7 @@ void BodyContact::find_active(const Points& x) const {
   report_.smallest_distance_mm = candidates_.parameters().near_skin_mm;
   for (const auto& chunk : active_)
     for (const Active& pair : chunk) {
+      if (!pair.whole) continue;
       ++report_.active;
       report_.slipping += pair.friction.slips();
       report_.penetration_mm = std::max(report_.penetration_mm, pair.contact_distance_mm - pair.distance_mm);
@@ -126,8 +169,9 @@ void BodyContact::add_stiffness_bound(const structure::Configuration& now,
       double lateral = p.pressure / std::max(d, 1e-3 * h);
       const double mu = pair.friction.coefficient;
       if (mu > 0) lateral += mu * (p.pressure / pair.friction.range_mm + p.stiffness);
-      for (int k = 0; k < 4; ++k)
-        out.translation[pair.node[k]] += 2 * std::abs(pair.weight[k]) * (p.stiffness + lateral);
+      // What is taken back stiffens only across its direction.
+      const double stiffness = pair.share < 0 ? -pair.share * lateral : pair.share * (p.stiffness + lateral);
+      for (int k = 0; k < 4; ++k) out.translation[pair.node[k]] += 2 * std::abs(pair.weight[k]) * stiffness;
     }
 }
 

@@ -77,9 +77,9 @@ void BodyContact::add_tangent(const structure::Configuration& now, structure::Bl
           const Vec3 along = f.tether.normalized();
           slope = f.range_mm / f.way_mm * (slope - along * along.transpose());
         }
-        const double coefficient = f.coefficient * f.pressing / f.range_mm;
-        slope *= coefficient * pair.at.pressure;
-        const Vec3 per_force = coefficient * f.tether;  // -d on_first/dN
+        slope *= f.coefficient * f.pressing_uN / f.range_mm;
+        const double pressing = pair.at.pressure > 0 ? f.pressing_uN / pair.at.pressure : 0;
+        const Vec3 per_force = f.coefficient * pressing / f.range_mm * f.tether;  // -d on_first/dN
         Vector12 pulled;
         for (int i = 0; i < 4; ++i) pulled.segment<3>(3 * i) = pair.weight[i] * per_force;
         k -= pair.at.stiffness * pulled * gradient.transpose();  // dN = -N' dd

@@ -12,18 +12,27 @@ std::array<Vec3, 4> places(const Points& x, const std::array<int, 4>& n) {
   return {x[n[0]], x[n[1]], x[n[2]], x[n[3]]};
 }
 
-/// m of a pair, n where its features are parallel.
-Vec3 surface_normal(PairKind kind, const std::array<Vec3, 4>& x, const Vec3& n) {
+/// The normal of both features, of any length; not unique, hence nought, for parallel edges.
+Vec3 common_normal(PairKind kind, const std::array<Vec3, 4>& x) {
   const bool edges = kind == PairKind::edge_edge;
   const Vec3 a = edges ? Vec3(x[1] - x[0]) : Vec3(x[2] - x[1]),
              b = edges ? Vec3(x[3] - x[2]) : Vec3(x[3] - x[1]);
   const Vec3 across = a.cross(b);
-  const double size = across.norm();
-  return size > 1e-3 * a.norm() * b.norm() ? Vec3(across / size) : n;
+  return across.norm() > 1e-3 * a.norm() * b.norm() ? across : Vec3(Vec3::Zero());
 }
 
-Vec3 traction(const PairFriction& f, double normal_force_uN) {
-  return -f.coefficient * f.pressing * normal_force_uN / f.range_mm * f.tether;
+bool pushes_along(const Vec3& normal, const Vec3& n) {
+  constexpr double cosine = 0.3;  // less in flat layers only where pairs hardly press
+  return std::abs(normal.dot(n)) > cosine * normal.norm();
+}
+
+/// Towards n.
+Vec3 unit(const Vec3& normal, const Vec3& n) {
+  return normal.dot(n) < 0 ? Vec3(-normal.normalized()) : normal.normalized();
+}
+
+Vec3 traction(const PairFriction& f) {
+  return -f.coefficient * f.pressing_uN / f.range_mm * f.tether;
 }
 
 }  // namespace
@@ -35,15 +44,17 @@ Friction::Friction(double slip_share) : slip_share_(slip_share) {
 }
 
 PairFriction Friction::at(PairKind kind, const FeaturePair& pair, const Points& x, const Nearest& near,
-                          double normal_force_uN) const {
+                          const Vec3& normal_force_uN) const {
   const std::array<Vec3, 4> now = places(x, pair.node);
   PairFriction f;
   f.key = {static_cast<int>(kind), pair.first, pair.second};
   f.other_body = pair.second_body;
   f.coefficient = pair.friction;
   f.range_mm = slip_share_ * pair.contact_distance_mm;
-  f.normal = surface_normal(kind, now, near.direction);
-  f.pressing = std::abs(near.direction.dot(f.normal));
+  const Vec3 normal = common_normal(kind, now);
+  const bool along = pushes_along(normal, near.direction);
+  f.normal = along ? unit(normal, near.direction) : near.direction;
+  f.pressing_uN = std::max(0.0, normal_force_uN.dot(f.normal));
   const auto own = tethers_.find(f.key);
   if (own == tethers_.end()) return f;
   f.known = true;
@@ -53,18 +64,19 @@ PairFriction Friction::at(PairKind kind, const FeaturePair& pair, const Points& 
     gap += near.weight[k] * now[k];
     gap_then += near.weight[k] * then[k];
   }
-  const Vec3 normal_then = surface_normal(kind, then, nearest(kind, then).direction);
+  const Vec3 direction_then = nearest(kind, then).direction;
+  Vec3 normal_then = along ? common_normal(kind, then) : direction_then;
+  normal_then = normal_then.isZero() ? direction_then : unit(normal_then, direction_then);
   const auto turn = Eigen::Quaterniond::FromTwoVectors(normal_then, f.normal);
   const Vec3 tether = turn * own->second + (gap - turn * gap_then);
   f.tether = tether - tether.dot(f.normal) * f.normal;
   f.way_mm = f.tether.norm();
   if (f.way_mm > f.range_mm) f.tether *= f.range_mm / f.way_mm;
-  f.on_first = traction(f, normal_force_uN);
+  f.on_first = traction(f);
   return f;
 }
 
-void Friction::accept(std::vector<PairFriction*> pairs, const std::vector<double>& normal_force_uN,
-                      const Points& x) {
+void Friction::accept(const std::vector<PairFriction*>& pairs, const Points& x) {
   // What the pairs of one feature with one body have, in units of the range, weighted by their forces.
   struct Share {
     Vec3 tether = Vec3::Zero();
@@ -74,22 +86,22 @@ void Friction::accept(std::vector<PairFriction*> pairs, const std::vector<double
   const auto feature = [](const PairFriction& f) -> std::array<int, 3> {
     return {f.key[0], f.key[1], f.other_body};
   };
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const PairFriction& f = *pairs[i];
+  for (const PairFriction* pair : pairs) {
+    const PairFriction& f = *pair;
     if (!f.known) continue;
-    if (f.slips()) work_ += f.coefficient * f.pressing * normal_force_uN[i] * (f.way_mm - f.range_mm);
+    if (f.slips()) work_ += f.coefficient * f.pressing_uN * (f.way_mm - f.range_mm);
     Share& share = of_feature[feature(f)];
-    share.tether += normal_force_uN[i] / f.range_mm * f.tether;
-    share.force += normal_force_uN[i];
+    share.tether += f.pressing_uN / f.range_mm * f.tether;
+    share.force += f.pressing_uN;
   }
   tethers_.clear();
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    PairFriction& f = *pairs[i];
+  for (PairFriction* pair : pairs) {
+    PairFriction& f = *pair;
     if (!f.known) {
       const auto found = of_feature.find(feature(f));
       if (found != of_feature.end() && found->second.force > 0)
         f.tether = f.range_mm / found->second.force * found->second.tether;
-      f.on_first = traction(f, normal_force_uN[i]);
+      f.on_first = traction(f);
       f.known = true;
     }
     f.way_mm = f.tether.norm();

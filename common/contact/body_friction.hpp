@@ -3,9 +3,10 @@
 // stick u (a share of the contact distance). Traction on the first feature
 //   f = -mu N |n . m| t/u,  |t| <= u,
 // N the pair's normal force, n its direction, m the normal of the surface: the triangle's, or that of both
-// edges (n where they are parallel). Where points lie beside the feature that they are near to, the pairs'
-// directions are inclined and their forces partly cancel; only what presses along m rubs. At rest the
-// friction holds without creep, in motion it is mu times the normal force. From one accepted state to the
+// edges (n where they are parallel, or where the pair pushes by more than 72 degrees aside of it: an edge of
+// the side face of a block over one of the floor). Where points lie beside the feature that they are near to,
+// the pairs' directions are inclined and their forces partly cancel; only what presses along m rubs. At rest
+// the friction holds without creep, in motion it is mu times the normal force. From one accepted state to the
 // next
 //   t <- cut[Q t + g - Q g_n],   tangential,
 // g = sum_i w_i x_i (weights w of distance.hpp), g_n the same of the last state's positions, and Q the
@@ -39,7 +40,7 @@ struct PairFriction {
   double range_mm = 0;         ///< u
   bool known = false;          ///< was in contact at the last accepted state
   Vec3 normal = Vec3::Zero();  ///< m
-  double pressing = 0;         ///< |n . m|
+  double pressing_uN = 0;      ///< N |n . m|, of the pair with its parts
   Vec3 tether = Vec3::Zero();
   double way_mm = 0;             ///< |t| before it was cut off
   Vec3 on_first = Vec3::Zero();  ///< uN
@@ -52,9 +53,9 @@ class Friction {
   double slip_share() const { return slip_share_; }
   /// The tether and traction of a pair at x.
   PairFriction at(PairKind kind, const FeaturePair& pair, const Points& x, const Nearest& near,
-                  double normal_force_uN) const;
+                  const Vec3& normal_force_uN) const;
   /// Accepts a state: `pairs` are all in contact at x; those that are new inherit their tether here.
-  void accept(std::vector<PairFriction*> pairs, const std::vector<double>& normal_force_uN, const Points& x);
+  void accept(const std::vector<PairFriction*>& pairs, const Points& x);
   double work_nJ() const { return work_; }
 
   structure::Snapshot save() const;

@@ -140,6 +140,7 @@ bool Candidates::complete(const Where& where, int body, int other, double radii,
   pair.modulus_area_uN = (own.modulus_Pa > 0 ? own.modulus_Pa : parameters_.modulus_Pa) * area;
   pair.friction = own.friction;
   pair.second_body = other;
+  pair.even = own.even;
   return h > 1e-6;
 }
 

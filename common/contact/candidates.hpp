@@ -21,6 +21,7 @@ struct BodyPairSettings {
   double distance_mm = 0;  ///< contact distance; 0: the sum of the two radii
   double modulus_Pa = 0;   ///< K of the pressure law; 0: the common one
   double friction = 0;     ///< Coulomb's coefficient
+  bool even = false;       ///< what neighbouring features see alike counts once
 };
 
 struct CandidateParameters {
@@ -38,7 +39,8 @@ struct FeaturePair {
   double modulus_area_uN;      ///< K A, A the smaller of the two features' areas (the vertex's with a face)
   double friction;             ///< Coulomb's coefficient
   int second_body;             ///< of the second feature
-  double wide_distance_mm;     ///< distance when the wide list was made
+  bool even;
+  double wide_distance_mm;  ///< distance when the wide list was made
 };
 
 class Candidates {

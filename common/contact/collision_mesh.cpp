@@ -58,10 +58,36 @@ int CollisionMesh::add_shell(const CollisionBody& body, int offset, const std::v
     }
     faces_.push_back({node, index, std::min({radius(node[0]), radius(node[1]), radius(node[2])})});
   }
+  share_features(faces_.size() - triangles.size());
   for (const auto& [node, area] : vertex_area) vertices_.push_back({node, index, radius(node), area});
   for (const auto& [edge, area] : edge_area)
     edges_.push_back({edge, index, std::min(radius(edge[0]), radius(edge[1])), area});
   return index;
+}
+
+void CollisionMesh::share_features(std::size_t first_face) {
+  std::map<std::array<int, 2>, int> on_edge;
+  std::map<int, int> at_vertex, missing;  // faces; 1 - faces + sum over its edges of faces - 1
+  const auto edge = [](const Face& face, int k) {
+    const int a = face.node[k], b = face.node[(k + 1) % 3];
+    return std::array<int, 2>{std::min(a, b), std::max(a, b)};
+  };
+  for (std::size_t f = first_face; f < faces_.size(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      ++on_edge[edge(faces_[f], k)];
+      ++at_vertex[faces_[f].node[k]];
+    }
+  for (const auto& [node, faces] : at_vertex) missing[node] = 1 - faces;
+  for (const auto& [nodes, faces] : on_edge)
+    for (int node : nodes) missing[node] += faces - 1;
+  for (std::size_t f = first_face; f < faces_.size(); ++f) {
+    Face& face = faces_[f];
+    for (int k = 0; k < 3; ++k) {
+      const double faces = on_edge[edge(face, k)];
+      face.edge_share[k] = (1 - faces) / faces;
+      face.vertex_share[k] = static_cast<double>(missing[face.node[k]]) / at_vertex[face.node[k]];
+    }
+  }
 }
 
 int CollisionMesh::add_beams(const CollisionBody& body, int offset, const std::vector<Edge>& edges,

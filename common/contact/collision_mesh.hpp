@@ -31,6 +31,10 @@ struct Face {
   std::array<int, 3> node;
   int body;
   double radius_mm;
+  /// What the neighbours see too, so that edges and vertices of the surface count once: of n faces on an edge
+  /// (from node k to the next) this one takes back (n - 1)/n, at a vertex it adds its part of what is missing
+  /// then (1/n inside, none on a border).
+  std::array<double, 3> edge_share{}, vertex_share{};
 };
 
 class CollisionMesh {
@@ -60,6 +64,7 @@ class CollisionMesh {
 
  private:
   int add_body(const CollisionBody& body);
+  void share_features(std::size_t first_face);
   void check_node(const std::string& body, int node) const;
   Points reference_;
   std::vector<int> identity_;

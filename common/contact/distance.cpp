@@ -56,6 +56,18 @@ Nearest point_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
   return finish(p - (u[0] * a + u[1] * b + u[2] * c), {1, -u[0], -u[1], -u[2]}, b - a, c - a);
 }
 
+Nearest point_segment(const std::array<Vec3, 4>& x, int point, int a, int b, bool point_first) {
+  const Vec3 along = x[b] - x[a];
+  const double squared = along.squaredNorm();
+  const double t = squared > 0 ? std::clamp((x[point] - x[a]).dot(along) / squared, 0.0, 1.0) : 0;
+  const double sign = point_first ? 1 : -1;
+  std::array<double, 4> weight{};
+  weight[point] = sign;
+  weight[a] -= sign * (1 - t);
+  weight[b] -= sign * t;
+  return finish(sign * (x[point] - ((1 - t) * x[a] + t * x[b])), weight, along, along);
+}
+
 Nearest edge_edge(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
   const Vec3 da = a1 - a0, db = b1 - b0, r = a0 - b0;
   const double a = da.squaredNorm(), e = db.squaredNorm();

@@ -21,6 +21,9 @@ struct Nearest {
 };
 
 Nearest point_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+/// x[point] belongs to the first feature, x[a] x[b] is an edge of the second, or the other way round; a = b:
+/// two points. The weights are those of the whole pair.
+Nearest point_segment(const std::array<Vec3, 4>& x, int point, int a, int b, bool point_first);
 Nearest edge_edge(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1);
 
 }  // namespace valsalva::contact

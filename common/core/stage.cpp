@@ -150,21 +150,20 @@ bool interrupted() {
 }
 
 std::filesystem::path StageContext::parent_state(const std::string& stage) {
-  fs::path chosen;
-  if (from) {
-    chosen = *from;
-  } else {
-    const fs::path folder = run.path().parent_path() / stage;
-    std::vector<fs::path> found;
-    if (fs::is_directory(folder)) found = RunFolder(folder).states();
-    if (found.empty())
-      throw InputError(
-          "{}: no state of stage '{}' was found; run 'make {} CASE={}' first, or give it with --from",
-          folder.string(), stage, stage, scene.file().string());
-    chosen = found.back();
-  }
-  summary.inputs[chosen.string()] = sha256_of_path(chosen);
-  return chosen;
+  if (!from) return newest_state(run.path().parent_path(), stage);
+  summary.inputs[from->string()] = sha256_of_path(*from);
+  return *from;
+}
+
+std::filesystem::path StageContext::newest_state(const fs::path& folder, const std::string& stage) {
+  std::vector<fs::path> found;
+  if (fs::is_directory(folder / stage)) found = RunFolder(folder / stage).states();
+  if (found.empty())
+    throw InputError(
+        "{}: no state of stage '{}' was found; run 'make {} CASE={}' first, or give it with --from",
+        (folder / stage).string(), stage, stage, scene.file().string());
+  summary.inputs[found.back().string()] = sha256_of_path(found.back());
+  return found.back();
 }
 
 int stage_main(int argc, char** argv, const Stage& stage) {

@@ -38,6 +38,8 @@ struct StageContext {
   /// Its digest is recorded in summary.inputs. InputError when there is none (it says which command makes
   /// it).
   std::filesystem::path parent_state(const std::string& stage);
+  /// The newest state in folder/<stage>/, its digest recorded; InputError when there is none.
+  std::filesystem::path newest_state(const std::filesystem::path& folder, const std::string& stage);
   /// sha256 of the parameters this stage depends on.
   std::string parameters_sha256() const { return summary.parameters_sha256; }
 };

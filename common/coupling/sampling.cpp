@@ -1,5 +1,6 @@
 #include "coupling/sampling.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -176,6 +177,10 @@ const Sampling::Rule& Sampling::rule(int count, const std::array<int, 3>& divisi
           ++rule.points;
         }
   }
+  // The dual functions: psi = D G^-1 N, G the mean of N N^T and D that of N over the points.
+  const Eigen::Map<const Eigen::MatrixXd> shape(rule.shape.data(), count, rule.points);
+  const Eigen::MatrixXd dual = (count * shape * shape.transpose() / rule.points).ldlt().solve(shape);
+  rule.shape.insert(rule.shape.end(), dual.data(), dual.data() + dual.size());
   return rule;
 }
 
@@ -195,7 +200,8 @@ void Sampling::locate(const Points& x) {
     }
     std::array<int, 3> division{};
     for (int d = 0; d < 3; ++d)
-      division[d] = static_cast<int>(std::ceil(std::clamp(longest[d] / spacing_ * (1 - 1e-9), 1e-9, most)));
+      division[d] =
+          std::max(2, static_cast<int>(std::ceil(std::min(longest[d] / spacing_ * (1 - 1e-9), most))));
     const Rule& chosen = rule(cell.count, division);
     runs_.push_back({static_cast<int>(c), &chosen, measure_[c] / chosen.points});
     for (int q = 0; q < chosen.points; ++q) {
@@ -217,7 +223,8 @@ void Sampling::to_points(const Points& nodal_force, Points& at_points) const {
       density[i] = run.share / mass_[cell.nodes[i]] * nodal_force[cell.nodes[i]];
     for (int q = 0; q < run.rule->points; ++q) {
       Vec3 force = Vec3::Zero();
-      for (int i = 0; i < cell.count; ++i) force += run.rule->shape[q * cell.count + i] * density[i];
+      for (int i = 0; i < cell.count; ++i)
+        force += run.rule->shape[(run.rule->points + q) * cell.count + i] * density[i];
       at_points.push_back(force);
     }
   }
@@ -233,7 +240,7 @@ void Sampling::to_nodes(const Points& point_velocity, Points& at_nodes) const {
     for (int i = 0; i < cell.count; ++i) {
       Vec3 sum = Vec3::Zero();
       for (int q = 0; q < run.rule->points; ++q)
-        sum += run.rule->shape[q * cell.count + i] * point_velocity[first + q];
+        sum += run.rule->shape[(run.rule->points + q) * cell.count + i] * point_velocity[first + q];
       at_nodes[cell.nodes[i]] += run.share / mass_[cell.nodes[i]] * sum;
     }
     first += run.rule->points;

@@ -1,13 +1,17 @@
 // Coupling to the grid by element quadrature, with a density that follows the deformation.
 //
-//   spread:       F_q = w_q sum_a N_a(q) F_a / m_a          at the points x_q = sum_a N_a(q) x_a
-//   interpolate:  U_a = 1/m_a sum_q w_q N_a(q) u(x_q),      m_a = sum_q w_q N_a(q)
+//   spread:       F_q = w_q sum_a psi_a(q) F_a / m_a        at the points x_q = sum_a N_a(q) x_a
+//   interpolate:  U_a = 1/m_a sum_q w_q psi_a(q) u(x_q),    sum_q w_q psi_a(q) N_b(q) = m_a delta_ab
 //
-// the adjoint pair of Griffith and Luo 2017 (Hybrid finite difference/finite element immersed boundary
-// method), sections 3 and 4, with the lumped mass matrix: force and power are kept to round-off, constant
-// velocities are exact, linear ones are smoothed over an element. Points of a cell: the midpoints of an equal
-// division of its edges, so many that their distance is at most `spacing` in the present shape; equal
-// weights, shares of the cell's reference measure.
+// adjoint operators: force, torque and power are kept to round-off, and every velocity that is linear on the
+// cells is exact. psi are the dual functions of the linear shape functions N (biorthogonal; Wohlmuth 2000,
+// SIAM J. Numer. Anal. 38), element by element, in place of the mass matrix of Griffith and Luo 2017 (Hybrid
+// finite difference/finite element immersed boundary method), sections 3 and 4. (With N and the lumped mass
+// instead, nodes on the surface move like points inside: the body cannot turn freely, and is held by a
+// spurious spring; docs/verification/coupling.md.) Points of a cell: the midpoints of an equal division of
+// its edges into at least two, so that their distance is at most `spacing` in the present shape; equal
+// weights, shares of the cell's reference measure. Where nodes are half a grid spacing apart, coupling at the
+// nodes is cheaper.
 //
 // Cells are linear: lines, triangles, tetrahedra and hexahedra; quadratic elements are divided into linear
 // ones over their nodes. A node without cell is a point itself.
@@ -53,7 +57,7 @@ class Sampling {
  private:
   struct Rule {
     int points = 0, nodes = 0;
-    std::vector<double> shape;  // of each point
+    std::vector<double> shape;  // N of each point, then psi of each point
   };
   struct Run {  // points of one cell
     int cell;

@@ -15,21 +15,36 @@ struct Line {
 };
 
 // The ghosts of one line (or, with `width` > 1, of `width` neighbouring lines) beyond one side.
-// `normal`: the component is normal to the side, hence a face lies on it.
-void fill_side(const Line& line, int width, int side, Side kind, bool normal, double wall_velocity) {
-  const auto [base, s, n] = line;
-  const auto at = [=](int m) { return base + m * s; };
-  const auto set = [width](double* to, double factor, const double* from, double shift) {
-    for (int i = 0; i < width; ++i) to[i] = factor * from[i] + shift;
+// `normal`: the component is normal to the side, hence a face lies on it. given(i): the velocity of wall or
+// inflow for the line i. owned: the high side's face is an entry of the field.
+template <class Given>
+void fill_side(const Line& line, int width, int side, Side kind, bool normal, bool owned,
+               const Given& given) {
+  const int n = line.n;
+  const auto at = [&line](int m) { return line.base + m * line.s; };
+  const auto set = [width](double* to, double factor, const double* from) {
+    for (int i = 0; i < width; ++i) to[i] = factor * from[i];
   };
   const bool high = side == 1;
   if (kind == Side::periodic) {
     for (int m = 0; m < ghosts; ++m) {
       if (high) {
-        set(at(n + m), 1, at(m), 0);
+        set(at(n + m), 1, at(m));
       } else {
-        set(at(-1 - m), 1, at(n - 1 - m), 0);
+        set(at(-1 - m), 1, at(n - 1 - m));
       }
+    }
+  } else if (normal && kind == Side::inflow) {
+    // Linear continuation, of the two the one that damps: next to an entrance the flux of fourth order
+    // becomes that of second, next to an exit it keeps its order.
+    const double inwards = high ? -1 : 1;
+    double* face = at(high ? n : 0);
+    const double *near = at(high ? n - 1 : 1), *far = at(high ? n - 2 : 2);
+    for (int i = 0; high && !owned && i < width; ++i) face[i] = given(i);
+    for (int m = 1; m <= (high ? ghosts - 1 : ghosts); ++m) {
+      double* to = at(high ? n + m : -m);
+      for (int i = 0; i < width; ++i)
+        to[i] = face[i] + m * (inwards * face[i] > 0 ? near[i] - far[i] : face[i] - near[i]);
     }
   } else if (normal) {
     const int face = high ? n : 0;
@@ -37,11 +52,14 @@ void fill_side(const Line& line, int width, int side, Side kind, bool normal, do
     std::fill_n(at(face), width, 0.0);
     const int layers = high ? ghosts - 1 : ghosts;
     for (int m = 1; m <= layers; ++m)
-      set(at(high ? face + m : face - m), sign, at(high ? face - m : face + m), 0);
+      set(at(high ? face + m : face - m), sign, at(high ? face - m : face + m));
   } else {
-    const double sign = kind == Side::slip ? 1 : -1;
-    const double shift = kind == Side::slip ? 0 : 2 * wall_velocity;
-    for (int m = 0; m < ghosts; ++m) set(at(high ? n + m : -1 - m), sign, at(high ? n - 1 - m : m), shift);
+    const double sign = kind == Side::slip ? 1 : -1, share = kind == Side::slip ? 0 : 2;
+    for (int m = 0; m < ghosts; ++m) {
+      double* to = at(high ? n + m : -1 - m);
+      const double* from = at(high ? n - 1 - m : m);
+      for (int i = 0; i < width; ++i) to[i] = sign * from[i] + share * given(i);
+    }
   }
 }
 
@@ -75,18 +93,22 @@ void fill_end(const Slab& slab, const Boundaries& boundaries, int side, FaceFiel
     Field& field = velocity[d];
     const Line line{field.row(-ghosts, 0) - ghosts, slab.stride_z, n};
     const int width = static_cast<int>(slab.stride_z);
-    if (kind == Side::open || kind == Side::inflow) {
+    if (kind == Side::open) {
       if (d == 2) {
         for (int m = 1; m <= (side == 1 ? ghosts - 1 : ghosts); ++m) {
           copy_plane(slab, field, side == 1 ? n : 0, side == 1 ? n + m : -m);
         }
-      } else if (kind == Side::open) {
-        fill_open_tangential(slab, d, side, velocity[2], field);
       } else {
-        fill_side(line, width, side, Side::wall, false, 0);
+        fill_open_tangential(slab, d, side, velocity[2], field);
       }
+    } else if (kind == Side::inflow) {
+      const SideVelocity& given = boundaries.inflow[2][side];
+      const int stride = static_cast<int>(slab.stride_y);
+      fill_side(line, width, side, kind, d == 2, true,
+                [&](int i) { return given.at(d, i % stride - ghosts, i / stride - ghosts); });
     } else {
-      fill_side(line, width, side, kind, d == 2, boundaries.velocity[2][side][d]);
+      const double wall = boundaries.velocity[2][side][d];
+      fill_side(line, width, side, kind, d == 2, true, [=](int) { return wall; });
     }
   }
 }
@@ -135,9 +157,8 @@ void Boundaries::check() const {
           "xyz"[d]);
     }
     for (Side kind : side[d]) {
-      if (d < 2 && (kind == Side::open || kind == Side::inflow)) {
-        throw InputError("fluid boundaries: an open or inflow side along {}; only the ends in z can be open",
-                         "xyz"[d]);
+      if (d < 2 && kind == Side::open) {
+        throw InputError("fluid boundaries: an open side along {}; only the ends in z can be open", "xyz"[d]);
       }
     }
   }
@@ -198,14 +219,26 @@ void fill_velocity_ghosts(const Slab& slab, const Boundaries& boundaries, FaceFi
     const int planes = d == 2 ? slab.w_planes() : slab.planes;
     for (int k = 0; k < planes; ++k) {
       for (int side = 0; side < 2; ++side) {
+        const Side kind = boundaries.side[0][side];
+        const SideVelocity& inflow = boundaries.inflow[0][side];
+        const double wall = boundaries.velocity[0][side][d];
         for (int j = 0; j < ny; ++j) {
-          fill_side({field.row(j, k), 1, nx}, 1, side, boundaries.side[0][side], d == 0,
-                    boundaries.velocity[0][side][d]);
+          const double given = kind == Side::inflow ? inflow.at(d, j, k) : wall;
+          fill_side({field.row(j, k), 1, nx}, 1, side, kind, d == 0, false, [=](int) { return given; });
         }
       }
       for (int side = 0; side < 2; ++side) {
-        fill_side({field.row(0, k) - ghosts, slab.stride_y, ny}, static_cast<int>(slab.stride_y), side,
-                  boundaries.side[1][side], d == 1, boundaries.velocity[1][side][d]);
+        const Side kind = boundaries.side[1][side];
+        const Line line{field.row(0, k) - ghosts, slab.stride_y, ny};
+        const int width = static_cast<int>(slab.stride_y);
+        if (kind == Side::inflow) {
+          const SideVelocity& inflow = boundaries.inflow[1][side];
+          fill_side(line, width, side, kind, d == 1, false,
+                    [&](int i) { return inflow.at(d, i - ghosts, k); });
+        } else {
+          const double wall = boundaries.velocity[1][side][d];
+          fill_side(line, width, side, kind, d == 1, false, [=](int) { return wall; });
+        }
       }
     }
     exchange_planes(slab, field, ghosts);

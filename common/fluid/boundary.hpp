@@ -4,7 +4,8 @@
 //   slip       normal velocity 0, no shear
 //   wall       normal velocity 0, tangential velocity that of the wall (`velocity`)
 //   open       (z only) a reservoir at the prescribed pressure p stands beyond the side (below)
-//   inflow     (z only) normal velocity prescribed face by face, tangential velocity 0
+//   inflow     all components of the velocity prescribed, place by place (`inflow`): an entrance, or any side
+//              with a known velocity, which continues linearly beyond it
 //
 // Open sides. What leaves does so against the pressure p, with zero gradient of velocity. What enters comes
 // from rest in the reservoir: its total pressure is p, so that face by face
@@ -18,7 +19,9 @@
 // Open and inflow sides take effect inside the lumen; what a level set or body covers stays at rest.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include "core/types.hpp"
 #include "fluid/grid.hpp"
@@ -28,6 +31,18 @@ namespace valsalva::fluid {
 enum class Side { periodic, slip, wall, open, inflow };
 enum class End { low = 0, high = 1 };  ///< of the z-axis
 
+/// Velocity on one side of the box, mm/s: component d where its field has entries, projected on the side.
+/// Of one rank; a and b count along the two other axes, the lower axis first, from the slab's first entry on.
+struct SideVelocity {
+  std::array<int, 2> extent{0, 0};
+  std::array<std::vector<double>, 3> value;  ///< a fastest; empty: zero
+  double at(int d, int a, int b) const {
+    if (value[d].empty()) return 0;
+    return value[d][static_cast<std::size_t>(std::clamp(b, 0, extent[1] - 1)) * extent[0] +
+                    std::clamp(a, 0, extent[0] - 1)];
+  }
+};
+
 struct Boundaries {
   std::array<std::array<Side, 2>, 3> side{
       {{Side::slip, Side::slip}, {Side::slip, Side::slip}, {Side::open, Side::open}}};
@@ -35,9 +50,12 @@ struct Boundaries {
   std::array<std::array<Vec3, 2>, 3> velocity{
       {{Vec3::Zero(), Vec3::Zero()}, {Vec3::Zero(), Vec3::Zero()}, {Vec3::Zero(), Vec3::Zero()}}};
 
+  /// Of inflow sides; Flow fills them.
+  std::array<std::array<SideVelocity, 2>, 3> inflow;
+
   bool periodic(int d) const { return side[d][0] == Side::periodic; }
   Side end(End end) const { return side[2][static_cast<int>(end)]; }
-  /// InputError: one side periodic and the other not; open or inflow in x or y.
+  /// InputError: one side periodic and the other not; open in x or y.
   void check() const;
 };
 

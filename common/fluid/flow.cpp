@@ -53,7 +53,6 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
     extra_viscosity_ = std::make_unique<ExtraViscosity>(slab_, boundaries_, parameters.extra_viscosity,
                                                         parameters.viscosity, parameters.density);
   }
-  for (auto& plane : inflow_) plane.assign(grid.plane_cells(), 0.0);
   fill_ghosts();
 }
 
@@ -86,48 +85,114 @@ void Flow::set_pressure(const std::function<double(const Vec3&)>& value) {
   }
 }
 
-void Flow::set_inflow(End end, const std::function<double(const Vec3&)>& w) {
-  const int side = static_cast<int>(end);
-  if (boundaries_.end(end) != Side::inflow) {
-    throw InputError("fluid: an inflow velocity for the {} end in z, whose kind is not inflow",
-                     side == 0 ? "low" : "high");
+// On the high sides of x and y no face is owned: the cell before it tells.
+bool Flow::solid_at_side(int axis, int side, int a, int b) const {
+  const auto& cells = slab_.grid.cells;
+  if (axis == 2) return solids_.owner(2, a, b, side == 0 ? 0 : slab_.planes) != 0;
+  if (axis == 0) return (side == 0 ? solids_.owner(0, 0, a, b) : solids_.owner(3, cells[0] - 1, a, b)) != 0;
+  return (side == 0 ? solids_.owner(1, a, 0, b) : solids_.owner(3, a, cells[1] - 1, b)) != 0;
+}
+
+void Flow::set_inflow(int axis, int side, const std::function<double(int, const Vec3&)>& velocity) {
+  if (boundaries_.side[axis][side] != Side::inflow) {
+    throw InputError("fluid: an inflow velocity for the {} end in {}, whose kind is not inflow",
+                     side == 0 ? "low" : "high", "xyz"[axis]);
   }
-  if (side == 0 ? !slab_.is_lowest() : !slab_.is_highest()) return;
+  if (!has_side(axis, side)) return;
   const Grid& grid = slab_.grid;
-  const int k = side == 0 ? 0 : slab_.planes;
-  for (int j = 0; j < grid.cells[1]; ++j) {
-    for (int i = 0; i < grid.cells[0]; ++i) {
-      inflow_[side][static_cast<std::size_t>(j) * grid.cells[0] + i] =
-          solids_.owner(2, i, j, k) == 0 ? w(grid.position(2, i, j, k + slab_.first)) : 0;
+  const int p = axis == 0 ? 1 : 0, q = axis == 2 ? 1 : 2;
+  SideVelocity& given = boundaries_.inflow[axis][side];
+  const std::array<int, 2> cells{grid.cells[p], q == 2 ? slab_.planes : grid.cells[q]};
+  given.extent = {cells[0] + 1, cells[1] + 1};
+  for (int d = 0; d < 3; ++d) {
+    given.value[d].assign(static_cast<std::size_t>(given.extent[0]) * given.extent[1], 0.0);
+    // Along its own axis a tangential component has one entry more than there are cells.
+    const int to_a = cells[0] + (d == p ? 1 : 0), to_b = cells[1] + (d == q ? 1 : 0);
+    for (int b = 0; b < given.extent[1]; ++b) {
+      for (int a = 0; a < given.extent[0]; ++a) {
+        const int in_a = std::min(a, to_a - 1), in_b = std::min(b, to_b - 1);
+        if (d == axis && solid_at_side(axis, side, in_a, in_b)) continue;
+        std::array<int, 3> at{0, 0, 0};
+        at[p] = in_a;
+        at[q] = in_b;
+        Vec3 x = grid.position(d, at[0], at[1], at[2] + (q == 2 ? slab_.first : 0));
+        x[axis] = side == 0 ? grid.low()[axis] : grid.high()[axis];
+        given.value[d][static_cast<std::size_t>(b) * given.extent[0] + a] = velocity(d, x);
+      }
     }
   }
+}
+
+Flow::GivenInflow Flow::given_inflow(int axis, int side) const {
+  const Grid& grid = slab_.grid;
+  const SideVelocity& given = boundaries_.inflow[axis][side];
+  GivenInflow sum;
+  if (has_side(axis, side)) {
+    for (int b = 0; b + 1 < given.extent[1]; ++b) {
+      for (int a = 0; a + 1 < given.extent[0]; ++a) {
+        if (solid_at_side(axis, side, a, b)) continue;
+        const double speed = given.at(axis, a, b);
+        sum.inwards += side == 0 ? speed : -speed;
+        sum.size += std::abs(speed);
+        sum.area += 1;
+        sum.flowing_area += speed != 0;
+      }
+    }
+  }
+  const double face = grid.h * grid.h;
+  std::array<double, 4> all{sum.inwards, sum.size, sum.area, sum.flowing_area};
+  mpi::sum_in_place(slab_.comm, all.data(), all.size());
+  return {face * all[0], face * all[1], face * all[2], face * all[3]};
+}
+
+void Flow::shift_inflow(int axis, int side, double speed) {
+  SideVelocity& given = boundaries_.inflow[axis][side];
+  if (!has_side(axis, side)) return;
+  for (int b = 0; b + 1 < given.extent[1]; ++b) {
+    for (int a = 0; a + 1 < given.extent[0]; ++a) {
+      if (!solid_at_side(axis, side, a, b))
+        given.value[axis][static_cast<std::size_t>(b) * given.extent[0] + a] += side == 0 ? speed : -speed;
+    }
+  }
+}
+
+void Flow::set_inflow(End end, const std::function<double(const Vec3&)>& w) {
+  set_inflow(2, static_cast<int>(end), [&](int d, const Vec3& x) { return d == 2 ? w(x) : 0; });
 }
 
 void Flow::set_inflow_rate(End end, const std::function<double(const Vec3&)>& shape, double rate) {
   set_inflow(end, shape);
   const int side = static_cast<int>(end);
-  const bool here = side == 0 ? slab_.is_lowest() : slab_.is_highest();
-  double carried = 0;
-  if (here) {
-    for (double w : inflow_[side]) carried += w * slab_.grid.h * slab_.grid.h;
-  }
-  carried = mpi::sum(slab_.comm, carried);
+  const double carried = (side == 0 ? 1 : -1) * given_inflow(2, side).inwards;
   if (carried == 0) {
     throw InputError(
         "fluid: the inflow profile of the {} end carries no flow through the lumen; "
         "check that the lumen reaches this end of the box",
         side == 0 ? "low" : "high");
   }
-  for (double& w : inflow_[side]) w *= rate / carried;
+  for (double& w : boundaries_.inflow[2][side].value[2]) w *= rate / carried;
 }
 
 void Flow::apply_inflow(FaceField& velocity) const {
+  const auto& cells = slab_.grid.cells;
   for (int side = 0; side < 2; ++side) {
-    if (boundaries_.side[2][side] != Side::inflow || (side == 0 ? !slab_.is_lowest() : !slab_.is_highest()))
-      continue;
-    const int nx = slab_.grid.cells[0], k = side == 0 ? 0 : slab_.planes;
-    for (int j = 0; j < slab_.grid.cells[1]; ++j) {
-      std::copy_n(inflow_[side].data() + static_cast<std::size_t>(j) * nx, nx, velocity[2].row(j, k));
+    if (boundaries_.side[0][side] == Side::inflow) {
+      for (int k = 0; k < slab_.planes; ++k) {
+        for (int j = 0; j < cells[1]; ++j)
+          velocity[0](side == 0 ? 0 : cells[0], j, k) = boundaries_.inflow[0][side].at(0, j, k);
+      }
+    }
+    if (boundaries_.side[1][side] == Side::inflow) {
+      for (int k = 0; k < slab_.planes; ++k) {
+        for (int i = 0; i < cells[0]; ++i)
+          velocity[1](i, side == 0 ? 0 : cells[1], k) = boundaries_.inflow[1][side].at(1, i, k);
+      }
+    }
+    if (boundaries_.side[2][side] == Side::inflow && has_side(2, side)) {
+      for (int j = 0; j < cells[1]; ++j) {
+        for (int i = 0; i < cells[0]; ++i)
+          velocity[2](i, j, side == 0 ? 0 : slab_.planes) = boundaries_.inflow[2][side].at(2, i, j);
+      }
     }
   }
 }
@@ -165,14 +230,17 @@ void Flow::advance(Advance step, const PredictOptions& options) {
   if (options.penalise) penalise(step.dt);
 }
 
-StepReport Flow::step_rk3(double dt) {
+StepReport Flow::step_rk3(double dt, const std::function<void(double)>& before_stage) {
   struct Stage {
     double part, weight_new, weight_old;  // the weights over the part of the step
   };
   constexpr std::array<Stage, 3> stages{
       {{8.0 / 15, 1, 0}, {2.0 / 15, 25.0 / 8, -17.0 / 8}, {1.0 / 3, 9.0 / 4, -5.0 / 4}}};
   StepReport report;
+  double done = 0;
   for (const auto& [part, weight_new, weight_old] : stages) {
+    done += part;
+    if (before_stage) before_stage(done);
     advance({.dt = part * dt, .weight_new = weight_new, .weight_old = weight_old}, {});
     report = project(part * dt);
   }
@@ -220,11 +288,11 @@ void Flow::fill_source(int k, double per_dt, double* plane) {
   if (boundaries_.periodic(1)) {
     std::copy_n(first_v, nx, end_v);
   } else {
-    std::fill_n(end_v, nx, 0.0);
+    for (int i = 0; i < nx; ++i) end_v[i] = boundaries_.inflow[1][1].at(1, i, k);
   }
   for (int j = 0; j < ny; ++j) {
     double* u = velocity_[0].row(j, k);
-    u[nx] = boundaries_.periodic(0) ? u[0] : 0;
+    u[nx] = boundaries_.periodic(0) ? u[0] : boundaries_.inflow[0][1].at(0, j, k);
     const double* v = velocity_[1].row(j, k);
     const double* w = velocity_[2].row(j, k);
     double* b = plane + static_cast<std::size_t>(j) * nx;

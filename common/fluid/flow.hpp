@@ -73,6 +73,10 @@ struct StepReport {
   double kinetic_energy = 0;  ///< nanojoule, over the whole box
 };
 
+struct WallPoint {
+  Vec3 x, normal;  ///< normal: towards the fluid
+};
+
 class Flow {
  public:
   Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const FlowParameters& parameters);
@@ -105,7 +109,22 @@ class Flow {
   /// Pressure of the reservoir at an open end, Pa.
   void set_end_pressure(End end, double pressure) { end_pressure_[static_cast<int>(end)] = pressure; }
   double end_pressure(End end) const { return end_pressure_[static_cast<int>(end)]; }
-  /// Velocity along +z on the faces of an inflow end, mm/s. Solid faces stay at rest.
+  /// Tangential velocity of a wall from now on, mm/s. Ghosts take it with the next step or fill_ghosts().
+  void set_wall_velocity(int axis, int side, const Vec3& velocity) {
+    boundaries_.velocity[axis][side] = velocity;
+  }
+  /// Velocity on an inflow side of the axis 0, 1, 2 (side 0 low, 1 high): component d at x, mm/s. Solid faces
+  /// stay at rest. Before predict: that at the end of the step.
+  void set_inflow(int axis, int side, const std::function<double(int d, const Vec3& x)>& velocity);
+  /// What the given velocity of an inflow side carries: flow into the box, sum of the sizes (mm3/s), open
+  /// area and the part of it with flow (mm2).
+  struct GivenInflow {
+    double inwards = 0, size = 0, area = 0, flowing_area = 0;
+  };
+  GivenInflow given_inflow(int axis, int side) const;
+  /// Adds to the inward velocity of the open faces of an inflow side, mm/s.
+  void shift_inflow(int axis, int side, double speed);
+  /// Velocity along +z on the faces of an inflow end, mm/s, without tangential part.
   void set_inflow(End end, const std::function<double(const Vec3& x)>& w);
   /// The same shape, scaled to a flow in mm3/s along +z. InputError when the shape carries no flow.
   void set_inflow_rate(End end, const std::function<double(const Vec3& x)>& shape, double rate);
@@ -123,12 +142,16 @@ class Flow {
 
   /// One Runge-Kutta step with force() and end pressures as they are. It keeps no history for AB2, and cannot
   /// be taken back.
-  StepReport step_rk3(double dt);
+  /// before_stage(part): called before each stage with the part of the step at which it ends, to prescribe
+  /// what stands there.
+  StepReport step_rk3(double dt, const std::function<void(double part)>& before_stage = {});
 
   /// Directly after project(): takes the step back. Velocity and pressure are exactly what they were before;
   /// the step history is forgotten, so that the next step is a first one.
   void undo();
 
+  /// Flow out of the box through a side, mm3/s.
+  double outflow(int axis, int side) const;
   /// Flow along +z through the face plane k (0..nz of the whole grid), inside the lumen, mm3/s.
   double flow_through(int plane) const;
   double flow_through(End end) const { return flow_through(end == End::low ? 0 : grid().cells[2]); }
@@ -147,12 +170,17 @@ class Flow {
   Vec3 momentum() const;                  ///< g mm/s
   Vec3 velocity_at(const Vec3& x) const;  ///< trilinear, mm/s; the same on all ranks
   double pressure_at(const Vec3& x);      ///< trilinear, Pa
+  /// At many points, which periodic sides repeat; velocity quadratic between faces, pressure trilinear
+  /// between cells.
+  std::vector<Vec3> velocity_at(const Points& points) const;
+  std::vector<double> pressure_at(const Points& points);
 
   /// Traction of the fluid along a wall through x, Pa: tangential part of mu times the slope at the wall of
   /// the parabola through the velocities at a, 2a and 3a = 4.5 h along the normal (towards the fluid). The
   /// wall's own velocity does not enter: the error of the interpolated wall is, next to it, a constant of
   /// second order. The constant viscosity counts.
   Vec3 wall_shear_stress(const Vec3& x, const Vec3& normal) const;
+  std::vector<Vec3> wall_shear_stress(const std::vector<WallPoint>& walls) const;
 
   /// Everything the continuation needs, below "fluid/", complete on rank 0 and empty elsewhere; the same for
   /// any number of ranks. Body masks and inflow shapes are the caller's, who sets them before load().
@@ -163,6 +191,10 @@ class Flow {
   state::Image image() const;
 
  private:
+  bool has_side(int axis, int side) const {
+    return axis < 2 || (side == 0 ? slab_.is_lowest() : slab_.is_highest());
+  }
+  bool solid_at_side(int axis, int side, int a, int b) const;
   void apply_inflow(FaceField& velocity) const;
   void advance(Advance step, const PredictOptions& options);
   void fill_phi_ghosts(Field& pressure, const std::array<double, 2>& end_pressure);
@@ -172,8 +204,10 @@ class Flow {
   StepReport correct(double dt);
   StepReport report_of(double dt, double energy, double speed) const;
   [[noreturn]] void report_not_finite() const;
+  // The part of this rank: the value where it holds the point, 0 elsewhere.
   double sample(const Field& field, int d, const Vec3& x) const;
   double sample_quadratic(int d, const Vec3& x) const;
+  Vec3 wrapped(const Vec3& x) const;
 
   Slab slab_;
   Boundaries boundaries_;
@@ -186,9 +220,8 @@ class Flow {
   FaceField velocity_, next_, rate_, force_;
   Field pressure_, correction_;
   std::array<double, 2> end_pressure_{};
-  std::array<std::vector<double>, 2> inflow_;  ///< w on the faces of inflow ends, x fastest
-  double previous_dt_ = 0;                     ///< 0: no history
-  bool keep_pressure_ = true;                  ///< of the running step: incremental
+  double previous_dt_ = 0;     ///< 0: no history
+  bool keep_pressure_ = true;  ///< of the running step: incremental
 };
 
 }  // namespace valsalva::fluid

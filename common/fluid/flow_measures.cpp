@@ -18,6 +18,20 @@ int local_w_plane(const Slab& slab, int plane) {
 
 }  // namespace
 
+double Flow::outflow(int axis, int side) const {
+  const Grid& grid = slab_.grid;
+  const int p = axis == 0 ? 1 : 0, q = axis == 2 ? 1 : 2;
+  double sum = 0;
+  if (has_side(axis, side)) {
+    std::array<int, 3> at{0, 0, 0};
+    at[axis] = side == 0 ? 0 : axis == 2 ? slab_.planes : grid.cells[axis];
+    for (at[q] = 0; at[q] < (q == 2 ? slab_.planes : grid.cells[q]); ++at[q]) {
+      for (at[p] = 0; at[p] < grid.cells[p]; ++at[p]) sum += velocity_[axis](at[0], at[1], at[2]);
+    }
+  }
+  return (side == 0 ? -1 : 1) * mpi::sum(slab_.comm, sum) * grid.h * grid.h;
+}
+
 double Flow::flow_through(int plane) const {
   const Grid& grid = slab_.grid;
   const int k = local_w_plane(slab_, plane);
@@ -166,16 +180,47 @@ double Flow::sample(const Field& field, int d, const Vec3& x) const {
       value += weight * field(c[0], c[1], c[2]);
     }
   }
-  return mpi::sum(slab_.comm, value);
+  return value;
 }
 
 Vec3 Flow::velocity_at(const Vec3& x) const {
-  return {sample(velocity_[0], 0, x), sample(velocity_[1], 1, x), sample(velocity_[2], 2, x)};
+  Vec3 value(sample(velocity_[0], 0, x), sample(velocity_[1], 1, x), sample(velocity_[2], 2, x));
+  mpi::sum_in_place(slab_.comm, value.data(), 3);
+  return value;
 }
 
 double Flow::pressure_at(const Vec3& x) {
   fill_pressure_ghosts(slab_, boundaries_, pressure_, end_pressure_);
-  return sample(pressure_, 3, x);
+  return mpi::sum(slab_.comm, sample(pressure_, 3, x));
+}
+
+Vec3 Flow::wrapped(const Vec3& x) const {
+  Vec3 out = x;
+  for (int e = 0; e < 3; ++e) {
+    const double low = grid().low()[e], extent = grid().high()[e] - low;
+    if (boundaries_.periodic(e)) out[e] -= extent * std::floor((out[e] - low) / extent);
+  }
+  return out;
+}
+
+std::vector<Vec3> Flow::velocity_at(const Points& points) const {
+  std::vector<double> all;
+  for (const Vec3& x : points) {
+    for (int d = 0; d < 3; ++d) all.push_back(sample_quadratic(d, wrapped(x)));
+  }
+  mpi::sum_in_place(slab_.comm, all.data(), all.size());
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    out.emplace_back(all[3 * i], all[3 * i + 1], all[3 * i + 2]);
+  return out;
+}
+
+std::vector<double> Flow::pressure_at(const Points& points) {
+  fill_pressure_ghosts(slab_, boundaries_, pressure_, end_pressure_);
+  std::vector<double> all;
+  for (const Vec3& x : points) all.push_back(sample(pressure_, 3, wrapped(x)));
+  mpi::sum_in_place(slab_.comm, all.data(), all.size());
+  return all;
 }
 
 // Quadratic in each direction, about the nearest face: its error is of third order, so that differences over
@@ -202,19 +247,28 @@ double Flow::sample_quadratic(int d, const Vec3& x) const {
       }
     }
   }
-  return mpi::sum(slab_.comm, value);
+  return value;
 }
 
 Vec3 Flow::wall_shear_stress(const Vec3& x, const Vec3& normal) const {
+  return wall_shear_stress(std::vector<WallPoint>{{x, normal}})[0];
+}
+
+std::vector<Vec3> Flow::wall_shear_stress(const std::vector<WallPoint>& walls) const {
   const double a = 1.5 * grid().h;
-  const Vec3 n = normal.normalized();
-  Vec3 slope;
-  for (int d = 0; d < 3; ++d) {
-    slope[d] = (-2.5 * sample_quadratic(d, x + a * n) + 4 * sample_quadratic(d, x + 2 * a * n) -
-                1.5 * sample_quadratic(d, x + 3 * a * n)) /
-               a;
+  Points places;
+  for (const auto& [x, normal] : walls) {
+    const Vec3 n = normal.normalized();
+    for (int m = 1; m <= 3; ++m) places.push_back(x + m * a * n);
   }
-  return parameters_.viscosity * (slope - slope.dot(n) * n);
+  const std::vector<Vec3> u = velocity_at(places);
+  std::vector<Vec3> shear;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const Vec3 n = walls[i].normal.normalized();
+    const Vec3 slope = (-2.5 * u[3 * i] + 4 * u[3 * i + 1] - 1.5 * u[3 * i + 2]) / a;
+    shear.push_back(parameters_.viscosity * (slope - slope.dot(n) * n));
+  }
+  return shear;
 }
 
 }  // namespace valsalva::fluid

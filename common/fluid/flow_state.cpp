@@ -89,15 +89,6 @@ void Flow::load(const state::State& state) {
   if (ends.size() != 2)
     throw InputError("{}: fluid/end_pressure_Pa has {} entries, expected 2", state.source, ends.size());
   std::copy_n(ends.begin(), 2, end_pressure_.begin());
-  for (int side = 0; side < 2; ++side) {
-    if (boundaries_.side[2][side] != Side::inflow || (side == 0 ? !slab_.is_lowest() : !slab_.is_highest()))
-      continue;
-    const double* w = velocity_[2].row(0, side == 0 ? 0 : slab_.planes);
-    for (int j = 0; j < slab_.grid.cells[1]; ++j) {
-      std::copy_n(w + j * slab_.stride_y, slab_.grid.cells[0],
-                  inflow_[side].data() + static_cast<std::size_t>(j) * slab_.grid.cells[0]);
-    }
-  }
   fill_ghosts();
 }
 

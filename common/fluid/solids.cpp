@@ -39,6 +39,7 @@ Solids::Solids(const Slab& slab, double density, Wall form) : slab_(slab), densi
   dead_cells_.resize(slab.planes);
   motion_.resize(1);
   force_.assign(1, Vec3::Zero());
+  moment_.assign(1, Vec3::Zero());
   const std::size_t cells = slab.grid.plane_cells() * slab.planes;
   for (int d = 0; d < 4; ++d) owner_[d].assign(cells + (d == 2 ? slab.grid.plane_cells() : 0), 0);
 }
@@ -186,6 +187,7 @@ int Solids::add_body(const std::string& name) {
   names_.push_back(name);
   motion_.emplace_back();
   force_.push_back(Vec3::Zero());
+  moment_.push_back(Vec3::Zero());
   return bodies() - 1;
 }
 
@@ -270,6 +272,7 @@ void Solids::list_faces() {
 void Solids::penalise(double dt, double eta, FaceField& velocity) {
   prepare();
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
+  std::fill(moment_.begin(), moment_.end(), Vec3::Zero());
   const double ratio = dt / eta, keep = 1 / (1 + ratio);
   const double mass_rate = density_ * std::pow(slab_.grid.h, 3) / dt;
   for (int d = 0; d < 3; ++d) {
@@ -293,6 +296,7 @@ void Solids::penalise(double dt, double eta, FaceField& velocity) {
     for (const Held& face : held_[d]) {
       const double after = keep * (u[face.index] + ratio * motion_[face.body].at(face.position)[d]);
       force_[face.body][d] += mass_rate * (u[face.index] - after);
+      moment_[face.body] += mass_rate * (u[face.index] - after) * face.position.cross(Vec3::Unit(d));
       u[face.index] = after;
     }
   }
@@ -300,6 +304,7 @@ void Solids::penalise(double dt, double eta, FaceField& velocity) {
 
 void Solids::record(double eta, const FaceField& before, const FaceField& velocity) {
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
+  std::fill(moment_.begin(), moment_.end(), Vec3::Zero());
   const double factor = density_ * std::pow(slab_.grid.h, 3) / eta;
   for (int d = 0; d < 3; ++d) {
     const double* u = velocity[d].data().data();
@@ -309,8 +314,11 @@ void Solids::record(double eta, const FaceField& before, const FaceField& veloci
       for (int i = 0; i < run.count; ++i) of_wall += u[run.first + i];
     }
     force_[wall][d] += factor * of_wall;
-    for (const Held& face : held_[d])
-      force_[face.body][d] += factor * (u[face.index] - motion_[face.body].at(face.position)[d]);
+    for (const Held& face : held_[d]) {
+      const double slip = u[face.index] - motion_[face.body].at(face.position)[d];
+      force_[face.body][d] += factor * slip;
+      moment_[face.body] += factor * slip * face.position.cross(Vec3::Unit(d));
+    }
   }
 }
 
@@ -318,6 +326,17 @@ Vec3 Solids::force_on(int body) const {
   Vec3 total = force_[body];
   mpi::sum_in_place(slab_.comm, total.data(), 3);
   return total;
+}
+
+Vec3 Solids::moment_on(int body, const Vec3& about) const {
+  check_body(body);
+  std::array<double, 6> all;
+  for (int d = 0; d < 3; ++d) {
+    all[d] = force_[body][d];
+    all[3 + d] = moment_[body][d];
+  }
+  mpi::sum_in_place(slab_.comm, all.data(), all.size());
+  return Vec3(all[3], all[4], all[5]) - about.cross(Vec3(all[0], all[1], all[2]));
 }
 
 }  // namespace valsalva::fluid

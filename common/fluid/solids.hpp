@@ -66,6 +66,7 @@ class Solids {
   void mark_inside(int body, const Distance& distance, const Vec3& low, const Vec3& high);
   /// Not for the wall, which is at rest.
   void set_motion(int body, const RigidMotion& motion);
+  const RigidMotion& motion(int body) const { return motion_[body]; }
 
   /// 0: fluid; otherwise 1 + number of the body. d = 3: the cell's centre. Owned planes only, k local.
   std::uint8_t owner(int d, int i, int j, int k) const { return owner_[d][index(i, j, k)]; }
@@ -103,6 +104,8 @@ class Solids {
   void record(double eta, const FaceField& before, const FaceField& velocity);
   /// Force of the fluid on the body over the last penalised step, micronewton (collective).
   Vec3 force_on(int body) const;
+  /// Its moment about a point, micronewton mm (collective). Not for the wall.
+  Vec3 moment_on(int body, const Vec3& about) const;
 
  private:
   struct Held {
@@ -142,7 +145,8 @@ class Solids {
   long still_ghosts_ = 0;
   std::vector<std::string> names_;
   std::vector<RigidMotion> motion_;
-  std::vector<Vec3> force_;  ///< of this rank
+  std::vector<Vec3> force_;   ///< of this rank
+  std::vector<Vec3> moment_;  ///< of this rank, about the origin
   std::array<std::vector<std::uint8_t>, 4> owner_;
   std::array<std::vector<Run>, 3> walls_;  ///< without ghost faces
   std::array<std::vector<Ghost>, 3> ghosts_;

@@ -210,6 +210,18 @@ struct Trial {
   double size = 0, norm = 0, along = 0;
 };
 
+// What round-off leaves of the forces: 500 of its units of those that would move every node by the length of
+// the scene.
+double force_round_off(const Equations& equations, const BlockMatrix& k) {
+  Eigen::VectorXd largest(3 * k.slots());
+  for (int i = 0; i < k.slots(); ++i) {
+    const BlockMatrix::Row& row = k.row(i);
+    const auto own = std::lower_bound(row.columns.begin(), row.columns.end(), i) - row.columns.begin();
+    largest.segment<3>(3 * i) = (i < k.nodes() ? equations.length() : 1.0) * row.blocks[own].diagonal();
+  }
+  return 1e-13 * equations.norm(largest);
+}
+
 // Adds to the report's counts, also when it fails.
 void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& matrix, LinearSolver& solver,
              const NewtonSettings& settings, bool search, NewtonReport& report) {
@@ -237,6 +249,7 @@ void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& ma
           report.residual, settings.max_iterations, equations.worst(residual));
     problem.tangent(matrix);
     report.linear = solver.solve(matrix, equations.fixed(), residual, u, now.x);
+    const double round_off = force_round_off(equations, matrix);
     const double allowed = equations.allowed(u);
     const double start = along(residual, u);
     const Configuration before = now;
@@ -257,7 +270,7 @@ void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& ma
         trial.norm = equations.norm(trial.residual);
         trial.along = along(trial.residual, u);
         if (!best.sound || trial.along < best.along) best = trial, best_step = step;
-        if (moving || !search || trial.norm < norm || trial.along <= 0.9 * start) break;
+        if (moving || !search || trial.norm < norm || trial.along <= 0.5 * start) break;
       } else if (!search && settings.line_search) {
         throw NumericalFailure("Newton's method: a full step is not possible: {}", obstacle);
       }
@@ -281,7 +294,7 @@ void iterate(Equations& equations, const NewtonProblem& problem, BlockMatrix& ma
                           settings.increment_tolerance * equations.length();
     residual = trial.residual;
     size = trial.size;
-    if (tiny && equations.norm(residual) <= 1e-4 * size) {
+    if (tiny && equations.norm(residual) <= std::max(1e-4 * size, round_off)) {
       ++report.iterations;
       report.residual = size > 0 ? equations.norm(residual) / size : 0;
       return;

@@ -8,11 +8,14 @@
 // Newton: K du = r with the prescribed motion still missing as given part of du. An increment that would take
 // bodies through each other is cut to the share that the terms allow. When a full step reverses an element,
 // or this does not converge, it starts again with a line search: steps are halved when they reverse an
-// element or neither |r| nor |r . du| falls (Crisfield 1991, section 9.2; not while prescribed motion is
-// missing, when both may rise). The search comes second because slender bodies converge through states of
-// large residual. Converged when the prescribed motion is complete and |r| <= tolerance x (sum of the norms
-// of the terms' forces, moments divided by the length of the scene), or when the increment is below
-// increment_tolerance x length and |r| below 1e-4 of that sum, where round-off stops.
+// element or neither |r| falls nor |r . du| to its half (Crisfield 1991, section 9.2; not while prescribed
+// motion is missing, when both may rise). Force evaluations cost a thirtieth of an iteration: a search that
+// is satisfied with less costs more (docs/results/structure-bench.md). The search comes second because
+// slender bodies converge through states of large residual. Converged when the prescribed motion is complete
+// and |r| <= tolerance x (sum of the norms of the terms' forces, moments divided by the length of the scene),
+// or when the increment is below increment_tolerance x length and |r| below 1e-4 of that sum, where round-off
+// stops, or, where hardly any force acts and the sum is round-off too, below 1e-13 of the stiffness times the
+// length.
 #pragma once
 
 #include <functional>

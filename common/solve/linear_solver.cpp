@@ -293,9 +293,22 @@ LinearReport LinearSolver::solve(const BlockMatrix& k, const std::vector<std::ui
   }
   if (attempt(true)) return report;
   p.release();
+  double smallest = 0, largest = 0;
+  for (int i = 0; i < 3 * k.slots(); ++i) {
+    if (fixed[i]) continue;
+    const BlockMatrix::Row& row = k.row(i / 3);
+    const auto own = std::lower_bound(row.columns.begin(), row.columns.end(), i / 3) - row.columns.begin();
+    const double stiffness = std::abs(row.blocks[own](i % 3, i % 3));
+    smallest = largest == 0 ? stiffness : std::min(smallest, stiffness);
+    largest = std::max(largest, stiffness);
+  }
   throw NumericalFailure(
-      "linear solver: the stiffness matrix is singular: a body can move freely, or the state is unstable; "
-      "check the supports");
+      "linear solver: the stiffness matrix is singular to round-off (its diagonal goes from {:.2g} to "
+      "{:.2g}): "
+      "a body can move freely, or the state is unstable: check the supports; or, where the diagonal spans "
+      "more "
+      "than ten decades, an element has nearly no length or thickness: remesh",
+      smallest, largest);
 }
 
 }  // namespace valsalva::solve

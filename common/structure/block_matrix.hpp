@@ -11,11 +11,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <map>
 #include <span>
 #include <vector>
 
 #include "core/types.hpp"
+#include "structure/threads.hpp"
 
 namespace valsalva::structure {
 
@@ -70,6 +72,19 @@ class BlockMatrix {
   std::size_t rank_ones_used_ = 0;
   long version_ = 0;
 };
+
+/// Adds count element matrices: fill(i, piece) for each on the threads, batch by batch, which bounds the
+/// memory; sums keep the order of i. Failures as for_all's.
+template <class Fill>
+void add_in_batches(int count, BlockMatrix& out, const Fill& fill, const char* what = "") {
+  constexpr int batch = 256;
+  std::vector<BlockMatrix::Piece> pieces(batch);
+  for (int first = 0; first < count; first += batch) {
+    const int now = std::min(batch, count - first);
+    for_all(now, what, first, [&](int i) { fill(first + i, pieces[i]); });
+    out.add({pieces.data(), static_cast<std::size_t>(now)});
+  }
+}
 
 /// [v]x, so that [v]x w = v x w.
 inline Mat3 cross_matrix(const Vec3& v) {

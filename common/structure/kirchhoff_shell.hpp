@@ -111,17 +111,14 @@ class KirchhoffShell {
     Vec3 normal;  // along which the edges' vectors are pulled
     Eigen::Matrix<double, ShellEdges::vectors, 3> edges;
   };
-  struct NodalTangent {
-    std::vector<int> nodes;
-    Eigen::MatrixXd k;
-  };
   struct Bending;
   void build_elements();
   void build_section(int element, const Vec3& e1, const Vec3& e2);
   Jet jet(const Points& vertices, int element) const;
   ElementForces element_forces(const Points& vertices, int element) const;
   Hessian hessian(const Element& e, const Jet& j, bool positive) const;
-  void element_tangent(const Points& vertices, int element, bool positive, NodalTangent& out) const;
+  void element_tangent(const Points& vertices, int element, bool positive, BlockMatrix::Piece& out) const;
+  void add_tangents(const Points& vertices, bool positive, BlockMatrix& out, int offset) const;
   LayerState layer_state(const Element& e, const Jet& j, double height) const;
 
   ShellMesh mesh_;

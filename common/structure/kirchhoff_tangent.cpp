@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "structure/kirchhoff_element.hpp"
+#include "structure/threads.hpp"
 
 namespace valsalva::structure {
 
@@ -85,13 +86,14 @@ KirchhoffShell::Hessian KirchhoffShell::hessian(const Element& e, const Jet& j, 
   return h;
 }
 
-void KirchhoffShell::element_tangent(const Points& vertices, int i, bool positive, NodalTangent& out) const {
+void KirchhoffShell::element_tangent(const Points& vertices, int i, bool positive,
+                                     BlockMatrix::Piece& out) const {
   const Element& e = elements_[i];
   Eigen::MatrixXd h = hessian(e, jet(vertices, i), positive);
   for (int k = 0; k < 3; ++k) edges_.project(e.edges[k], 6 + 3 * ShellEdges::vectors * k, h);
   Eigen::MatrixXd weights;
-  edges_.reach(i, out.nodes, weights);
-  const int count = static_cast<int>(out.nodes.size());
+  edges_.reach(i, out.slots, weights);
+  const int count = static_cast<int>(out.slots.size());
   // The jet's vectors by the nodes.
   Eigen::Matrix<double, jets, Eigen::Dynamic> by_node =
       Eigen::Matrix<double, jets, Eigen::Dynamic>::Zero(jets, count);
@@ -112,38 +114,41 @@ void KirchhoffShell::element_tangent(const Points& vertices, int i, bool positiv
     }
 }
 
+void KirchhoffShell::add_tangents(const Points& vertices, bool positive, BlockMatrix& out, int offset) const {
+  constexpr int batch = 256;  // bounds the memory; the sums keep the order of the elements
+  std::vector<BlockMatrix::Piece> pieces(batch);
+  for (int first = 0; first < elements(); first += batch) {
+    const int count = std::min(batch, elements() - first);
+    for_all(count, "", first, [&](int i) {
+      element_tangent(vertices, first + i, positive, pieces[i]);
+      for (int& a : pieces[i].slots) a += offset;
+    });
+    out.add(std::span(pieces).first(count));
+  }
+}
+
 void KirchhoffShell::add_tangent(const Points& x, BlockMatrix& out, int offset,
                                  std::span<const Mat3> clamps) const {
   Points vertices;
   edges_.gather(x, offset, vertices, clamps);
-  NodalTangent own;
-  for (int i = 0; i < elements(); ++i) {
-    element_tangent(vertices, i, false, own);
-    for (int& a : own.nodes) a += offset;
-    out.add(own.nodes, own.k);
-  }
+  add_tangents(vertices, false, out, offset);
 }
 
 void KirchhoffShell::add_positive_tangent(const Points& x, BlockMatrix& out, int offset) const {
   Points vertices;
   edges_.gather(x, offset, vertices);
-  NodalTangent own;
-  for (int i = 0; i < elements(); ++i) {
-    element_tangent(vertices, i, true, own);
-    for (int& a : own.nodes) a += offset;
-    out.add(own.nodes, own.k);
-  }
+  add_tangents(vertices, true, out, offset);
 }
 
 void KirchhoffShell::add_stiffness_bound(const Points& x, std::vector<double>& bound, int offset) const {
   Points vertices;
   edges_.gather(x, offset, vertices);
-  NodalTangent own;
+  BlockMatrix::Piece own;
   for (int i = 0; i < elements(); ++i) {
     element_tangent(vertices, i, true, own);
     const Eigen::VectorXd rows = own.k.cwiseAbs().rowwise().sum();
-    for (std::size_t a = 0; a < own.nodes.size(); ++a)
-      bound[offset + own.nodes[a]] += rows.segment<3>(3 * a).maxCoeff();
+    for (std::size_t a = 0; a < own.slots.size(); ++a)
+      bound[offset + own.slots[a]] += rows.segment<3>(3 * a).maxCoeff();
   }
 }
 

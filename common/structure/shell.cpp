@@ -206,10 +206,13 @@ double Shell::hinge_angle(const Points& x, int h, int offset) const {
 }
 
 double Shell::hinge_forces(const Points& x, int offset, int h, std::array<Vec3, 4>& f) const {
+  const auto& n = hinges_[h].nodes;
+  return hinge_forces({x[offset + n[0]], x[offset + n[1]], x[offset + n[2]], x[offset + n[3]]}, h, f);
+}
+
+double Shell::hinge_forces(const std::array<Vec3, 4>& at, int h, std::array<Vec3, 4>& f) const {
   const Hinge& hinge = hinges_[h];
-  const auto& n = hinge.nodes;
-  const HingeGeometry g =
-      hinge_geometry(x[offset + n[0]], x[offset + n[1]], x[offset + n[2]], x[offset + n[3]]);
+  const HingeGeometry g = hinge_geometry(at[0], at[1], at[2], at[3]);
   const double bend = turn(g.angle - hinge.rest_angle);
   for (int k = 0; k < 4; ++k) f[k] = -hinge.stiffness * bend * g.gradient[k];
   return 0.5 * hinge.stiffness * bend * bend;
@@ -390,37 +393,43 @@ void ShellTangent::add_row_sums(std::vector<double>& bound, int offset) const {
 
 void ShellTangent::add_membrane(BlockMatrix& out, int offset) const {
   const Range own = share(shell_.elements(), part_);
-  for (int e = own.begin; e < own.end; ++e) {
-    std::array<int, 3> slots = shell_.mesh_.triangles[e];
-    for (int& a : slots) a += offset;
-    out.add(slots, element_[e - own.begin]);
+  add_in_batches(own.end - own.begin, out, [&](int i, BlockMatrix::Piece& piece) {
+    const Triangle& nodes = shell_.mesh_.triangles[own.begin + i];
+    piece.slots = {offset + nodes[0], offset + nodes[1], offset + nodes[2]};
+    piece.k = element_[i];
+  });
+}
+
+Eigen::MatrixXd Shell::hinge_tangent(const Points& x, int offset, int h) const {
+  const std::array<int, 4>& nodes = hinges_[h].nodes;
+  std::array<Vec3, 4> moved;
+  for (int a = 0; a < 4; ++a) moved[a] = x[offset + nodes[a]];
+  const double step = 1e-6 * (moved[1] - moved[0]).norm();
+  Eigen::MatrixXd k(12, 12);
+  for (int column = 0; column < 12; ++column) {
+    double& at = moved[column / 3][column % 3];
+    const double here = at;
+    std::array<Vec3, 4> ahead, behind;
+    at = here + step;
+    hinge_forces(moved, h, ahead);
+    at = here - step;
+    hinge_forces(moved, h, behind);
+    at = here;
+    for (int a = 0; a < 4; ++a) k.block<3, 1>(3 * a, column) = (behind[a] - ahead[a]) / (2 * step);
   }
+  return 0.5 * (k + k.transpose());
 }
 
 void Shell::add_tangent(const Points& x, BlockMatrix& out, int offset) const {
   ShellTangent tangent(*this, {}, ShellTangent::Geometric::exact);
   tangent.update(x, offset);
   tangent.add_membrane(out, offset);
-  Points moved = x;
-  Eigen::MatrixXd k(12, 12);
-  for (int h = 0; h < hinges(); ++h) {
-    std::array<int, 4> slots = hinges_[h].nodes;
-    for (int& a : slots) a += offset;
-    const double step = 1e-6 * (x[slots[1]] - x[slots[0]]).norm();
-    for (int column = 0; column < 12; ++column) {
-      double& at = moved[slots[column / 3]][column % 3];
-      const double here = at;
-      std::array<Vec3, 4> ahead, behind;
-      at = here + step;
-      hinge_forces(moved, offset, h, ahead);
-      at = here - step;
-      hinge_forces(moved, offset, h, behind);
-      at = here;
-      for (int a = 0; a < 4; ++a) k.block<3, 1>(3 * a, column) = (behind[a] - ahead[a]) / (2 * step);
-    }
-    k = (0.5 * (k + k.transpose())).eval();
-    out.add(slots, k);
-  }
+  add_in_batches(hinges(), out, [&](int h, BlockMatrix::Piece& piece) {
+    const std::array<int, 4>& nodes = hinges_[h].nodes;
+    piece.slots.assign(nodes.begin(), nodes.end());
+    for (int& a : piece.slots) a += offset;
+    piece.k = hinge_tangent(x, offset, h);
+  });
 }
 
 void Shell::add_tangent_product(const Points& x, const Points& direction, Points& out) const {

@@ -101,6 +101,8 @@ class Shell {
   };
   double element_forces(const Points& x, int offset, int element, std::array<Vec3, 3>& f) const;
   double hinge_forces(const Points& x, int offset, int hinge, std::array<Vec3, 4>& f) const;
+  double hinge_forces(const std::array<Vec3, 4>& at, int hinge, std::array<Vec3, 4>& f) const;
+  Eigen::MatrixXd hinge_tangent(const Points& x, int offset, int hinge) const;
   void build_elements();
   void build_hinges(const Bending& bending);
 

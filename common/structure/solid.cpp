@@ -18,26 +18,6 @@ using materials::ElasticResponse;
 
 namespace {
 
-// Runs work(i) for all i on the threads; the failure of the lowest index is reported.
-template <class Work>
-void for_all(int count, const char* what, int first, const Work& work) {
-  int failed = count;
-  std::string message;
-#pragma omp parallel for schedule(static) if (count > 30)
-  for (int i = 0; i < count; ++i) {
-    try {
-      work(i);
-    } catch (const NumericalFailure& failure) {
-#pragma omp critical
-      if (i < failed) {
-        failed = i;
-        message = failure.what();
-      }
-    }
-  }
-  if (failed < count) throw NumericalFailure("{} {}: {}", what, first + failed, message);
-}
-
 // dE in Voigt order per nodal displacement.
 void strain_matrix(const Mat3& f, const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>>& gradient,
                    Eigen::Matrix<double, 6, Eigen::Dynamic>& b) {
@@ -450,18 +430,13 @@ void Solid::for_each_patch(const Points& x, int offset, const NodalPressure& nod
 
 void Solid::add_tangent(const Points& x, BlockMatrix& out, int offset) const {
   const NodalPressure nodal = nodal_pressures(x, offset);
-  constexpr int batch = 256;  // bounds the memory; the sums keep the order of the elements
-  std::vector<BlockMatrix::Piece> pieces(batch);
-  for (int first = 0; first < elements(); first += batch) {
-    const int count = std::min(batch, elements() - first);
-    for_all(count, "element", first, [&](int i) {
-      const auto nodes = mesh_.nodes_of(first + i);
-      pieces[i].slots.assign(nodes.begin(), nodes.end());
-      for (int& a : pieces[i].slots) a += offset;
-      pieces[i].k = element_tangent(x, offset, first + i, nodal);
-    });
-    out.add({pieces.data(), static_cast<std::size_t>(count)});
-  }
+  const auto fill = [&](int e, BlockMatrix::Piece& piece) {
+    const auto nodes = mesh_.nodes_of(e);
+    piece.slots.assign(nodes.begin(), nodes.end());
+    for (int& a : piece.slots) a += offset;
+    piece.k = element_tangent(x, offset, e, nodal);
+  };
+  add_in_batches(elements(), out, fill, "element");
   for_each_patch(x, offset, nodal,
                  [&](const std::vector<int>& around, const Eigen::VectorXd& slope, double curvature) {
                    out.add_rank_one(around, slope, curvature);

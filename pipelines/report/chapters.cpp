@@ -265,7 +265,7 @@ std::string checks_chapter(const RunData& run) {
     for (const auto& [key, check] : checks->items()) {
       if (!check.is_object()) continue;
       const Quantity q = quantity(key);
-      const auto value = [&](const char* name) {
+      const auto value = [&check = check](const char* name) {
         const auto found = check.find(name);
         return found != check.end() && found->is_number() ? number(found->get<double>()) : std::string("–");
       };

@@ -1,16 +1,18 @@
 // Speed of the structural core.
 //
-//   bench_structure                                  one JSON object a line: {name, value, unit, reference,
-//   ratio,
-//                                                    ranks}; `ranks` counts threads, 1 and 2
-//   bench_structure once                             the same with one thread only (on a busy machine)
-//   bench_structure valve KIND N LAYERS [gamg]       one closed valve by Newton: JSON with unknowns, time,
-//   probes bench_structure calculix TYPE N LAYERS FILE      the same valve as CalculiX's input, TYPE C3D8,
-//   C3D10, C3D20 ...
+//   bench_structure                   one JSON object a line: {name, value, unit, reference, ratio, ranks};
+//                                     `ranks` counts threads, 1 and 2
+//   bench_structure once              the same with one thread only
+//   bench_structure valve KIND N LAYERS [gamg]          one closed valve by Newton: JSON with unknowns, time,
+//                                                       probes
+//   bench_structure calculix TYPE N LAYERS FILE         the same valve as CalculiX's input, TYPE C3D8, C3D10,
+//                                                       C3D20 ...
 //
-// KIND: tet4, tet10, hex8, hex27, each with -mixed or without. The reference of a rate is what the measured
-// memory bandwidth (triad on 240 MB) allows when every byte of the element tables and of the nodal arrays is
-// moved once.
+// The structure runs on threads, not ranks: its bodies are small beside the fluid's grid and every rank of a
+// coupled run holds all of them. KIND: tet4, tet10, hex8, hex27, each with -mixed or without. The reference
+// of a rate is what the measured memory bandwidth (triad on 240 MB) allows when every byte of the element
+// tables and of the nodal arrays is moved once. One thread: processor time, which other work on the machine
+// hardly disturbs; two: wall time.
 #include <omp.h>
 #include <sys/resource.h>
 
@@ -21,7 +23,9 @@
 #include <fstream>
 
 #include "core/errors.hpp"
+#include "structure/beam.hpp"
 #include "structure/integrator.hpp"
+#include "structure/kirchhoff_shell.hpp"
 #include "structure/shell_term.hpp"
 #include "structure/threads.hpp"
 #include "structure_valve.hpp"
@@ -109,6 +113,14 @@ double bytes_per_element(const Kind& kind) {
   return tables + n * 24 * 5;  // positions, the element's own forces out and in, the sum in and out
 }
 
+template <class Forces, class Tangent>
+void rates(const std::string& name, double count, double bytes, double unknowns, double bytes_per_s,
+           int threads, const Forces& forces, const Tangent& tangent) {
+  report("forces, " + name, count / seconds(forces), "elements/s", bytes_per_s / bytes, threads);
+  report("tangents with assembly, " + name, count / seconds(tangent), "elements/s",
+         bytes_per_s / (bytes + 2 * 8 * unknowns * unknowns), threads);
+}
+
 void element_rates(double bytes_per_s, int threads) {
   const ClosedValve valve;
   for (const Kind& kind : kinds()) {
@@ -118,37 +130,76 @@ void element_rates(double bytes_per_s, int threads) {
     Points x = scene.system.state.x, f(x.size());
     for (Vec3& p : x) p.z() *= 0.98;
     BlockMatrix k(x.size(), 0);
-    const double count = scene.solid->elements();
-    const double force = seconds([&] { scene.solid->add_forces(x, f); });
-    const double tangent = seconds([&] {
-      k.set_zero();
-      scene.solid->add_tangent(x, k);
-    });
-    const double n_dof = 3.0 * nodes_of(kind.shape), bytes = bytes_per_element(kind);
-    report("forces, " + kind.name(), count / force, "elements/s", bytes_per_s / bytes, threads);
-    report("tangents with assembly, " + kind.name(), count / tangent, "elements/s",
-           bytes_per_s / (bytes + 2 * 8 * n_dof * n_dof), threads);
+    rates(
+        kind.name(), scene.solid->elements(), bytes_per_element(kind), 3.0 * nodes_of(kind.shape),
+        bytes_per_s, threads, [&] { scene.solid->add_forces(x, f); },
+        [&] {
+          k.set_zero();
+          scene.solid->add_tangent(x, k);
+        });
   }
 }
 
 // The same leaflet as a sheet of triangles.
+structure::ShellMesh leaflet_sheet(const ClosedValve& v, int n) {
+  structure::ShellMesh mesh;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+      mesh.reference.push_back(leaflet_point(v, double(i) / n, double(j) / n * (1 - 1e-3)));
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+      mesh.triangles.push_back({a, d, b});
+      mesh.triangles.push_back({a, c, d});
+    }
+  mesh.thickness_mm.assign(mesh.reference.size(), v.thickness_mm);
+  return mesh;
+}
+
+void sheet_and_beam_rates(double bytes_per_s, int threads) {
+  const ClosedValve v;
+  const structure::ShellMesh mesh = leaflet_sheet(v, 48);
+  const auto law = std::make_shared<materials::NeoHookean>(v.shear_Pa);
+  Points x = mesh.reference, f(x.size());
+  for (Vec3& p : x) p.z() *= 0.98;
+  const auto sheet = [&](const std::string& name, const auto& shell, double bytes, double unknowns) {
+    BlockMatrix k(x.size(), 0);
+    rates(
+        name, shell.elements(), bytes, unknowns, bytes_per_s, threads, [&] { shell.add_forces(x, f); },
+        [&] {
+          k.set_zero();
+          shell.add_tangent(x, k);
+        });
+  };
+  sheet("triangle with hinges", Shell(mesh, law, {3 * v.shear_Pa, 0.5}), 400, 18);
+  sheet("Kirchhoff triangle", KirchhoffShell(mesh, law_section(law, 3)), 900, 18);
+  BeamMesh line;
+  for (int a = 0; a <= 2000; ++a) line.reference.emplace_back(0.5 * a, std::sin(0.1 * a), 0);
+  for (int a = 0; a < 2000; ++a) line.elements.push_back({a, a + 1});
+  line.width_mm.assign(2000, 0.3);
+  line.depth_mm.assign(2000, 0.4);
+  line.depth_axis.assign(2000, Vec3::UnitZ());
+  const BeamNetwork beams(line, {5e10, 0.33, 6.45e-3});
+  const std::vector<Eigen::Quaterniond> turns(line.reference.size(), Eigen::Quaterniond::Identity());
+  Points now = line.reference, force(now.size()), moment(now.size());
+  for (Vec3& p : now) p.y() *= 0.9;
+  BlockMatrix k(now.size(), now.size());
+  rates(
+      "beam", beams.elements(), 600, 12, bytes_per_s, threads,
+      [&] { beams.add_forces(now, turns, force, moment); },
+      [&] {
+        k.set_zero();
+        beams.add_tangent(now, turns, k);
+      });
+}
+
 struct SheetScene {
   System system;
   std::shared_ptr<Shell> shell;
   std::vector<std::shared_ptr<ForceTerm>> terms;
 
   SheetScene(const ClosedValve& v, int n) {
-    structure::ShellMesh mesh;
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i)
-        mesh.reference.push_back(leaflet_point(v, double(i) / n, double(j) / n * (1 - 1e-3)));
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        const int a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
-        mesh.triangles.push_back({a, d, b});
-        mesh.triangles.push_back({a, c, d});
-      }
-    mesh.thickness_mm.assign(mesh.reference.size(), v.thickness_mm);
+    const structure::ShellMesh mesh = leaflet_sheet(v, n);
     shell = std::make_shared<Shell>(mesh, std::make_shared<materials::NeoHookean>(v.shear_Pa),
                                     Bending{3 * v.shear_Pa, 0.5});
     const Body body = system.add_body("leaflet", mesh.reference, shell->lumped_mass(v.density));
@@ -200,13 +251,15 @@ struct NewtonRun {
   int unknowns = 0, iterations = 0, steps = 0, failures = 0;
   double wall_s = 0, processor_s = 0;
   Points probes;
+  std::unique_ptr<ValveScene> scene;  ///< closed
 };
 
 NewtonRun newton_run(const Kind& kind, int n, int layers, solve::LinearMethod method) {
   const ClosedValve valve;
   NewtonRun run;
   const double start = wall(), used = processor();
-  ValveScene scene(valve, valve_mesh(valve, kind.shape, n, layers), kind.formulation);
+  run.scene = std::make_unique<ValveScene>(valve, valve_mesh(valve, kind.shape, n, layers), kind.formulation);
+  ValveScene& scene = *run.scene;
   solve::StaticsSettings settings;
   settings.first_step = 1;
   settings.linear.method = method;
@@ -222,6 +275,36 @@ NewtonRun newton_run(const Kind& kind, int n, int layers, solve::LinearMethod me
   return run;
 }
 
+// One linear system of the closed valve under a dead weight: MUMPS with a new pattern and with the former one
+// again, GAMG with conjugate gradients (GMRES where the pressure makes the matrix unsymmetric).
+void solver_rates(ValveScene& scene, int threads) {
+  solve::Equations equations(scene.system, scene.terms, {});
+  BlockMatrix k = equations.matrix();
+  equations.tangent(k);
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(equations.unknowns());
+  for (int a = 0; a < static_cast<int>(scene.system.nodes()); ++a) weight[3 * a + 2] = scene.system.mass(a);
+  const std::string of = ", " + std::to_string(equations.free_unknowns()) + " unknowns, ";
+  for (const bool multigrid : {false, true}) {
+    solve::LinearSettings settings;
+    settings.method = multigrid ? solve::LinearMethod::multigrid : solve::LinearMethod::direct;
+    solve::LinearSolver solver(settings);
+    for (const char* which : {"first", "again"}) {
+      Eigen::VectorXd u = Eigen::VectorXd::Zero(equations.unknowns());
+      const double start = now();
+      const solve::LinearReport found =
+          solver.solve(k, equations.fixed(), equations.local(weight), u, scene.system.state.x);
+      const bool failed = multigrid && found.direct;
+      report(std::string("linear solver, ") + (multigrid ? "GAMG" : "MUMPS") + of + which +
+                 (failed ? ", no convergence, then MUMPS" : ""),
+             now() - start, "s", 0, threads);
+      if (multigrid && !failed)
+        report("linear solver, GAMG" + of + which + ", iterations", found.iterations, "iterations", 0,
+               threads);
+      if (failed) break;
+    }
+  }
+}
+
 void newton_rates(int threads) {
   for (const auto& [name, n, layers] : std::vector<std::tuple<std::string, int, int>>{
            {"hex8-mixed", 32, 2}, {"tet10-mixed", 20, 1}, {"hex27-mixed", 16, 1}, {"hex8-mixed", 104, 2}}) {
@@ -231,6 +314,8 @@ void newton_rates(int threads) {
     report(what + "iterations", run.iterations, "iterations", 0, threads);
     report(what + "time of one", (threads == 1 ? run.processor_s : run.wall_s) / run.iterations, "s", 0,
            threads);
+    report(what + "time of all", threads == 1 ? run.processor_s : run.wall_s, "s", 0, threads);
+    if (name == "hex8-mixed" && threads == 1) solver_rates(*run.scene, threads);  // no threads in PETSc
   }
 }
 
@@ -334,6 +419,7 @@ int main(int argc, char** argv) {
         const double bytes_per_s = bandwidth();
         report("memory bandwidth, triad", 1e-9 * bytes_per_s, "GB/s", 0, threads);
         element_rates(bytes_per_s, threads);
+        sheet_and_beam_rates(bytes_per_s, threads);
         explicit_rates(bytes_per_s, threads);
         newton_rates(threads);
       }

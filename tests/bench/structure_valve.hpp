@@ -47,7 +47,7 @@ struct ValveMesh {
   std::vector<int> probes;  ///< on the aortic face, away from the supports
 };
 
-/// n x n elements over the leaflet, `layers` through its thickness; n a multiple of 4.
+/// n x n elements over the leaflet, `layers` through its thickness; n a multiple of 4 (of 2: quadratic ones).
 inline ValveMesh valve_mesh(const ClosedValve& valve, Shape shape, int n, int layers) {
   ValveMesh m;
   m.mesh = solid_box(

@@ -140,6 +140,21 @@ TEST_F(Deploy, ResumedRunsGiveTheSameBits) {
   for (const auto& [name, array] : a.restart) EXPECT_EQ(array.data, b.array(name).data) << name;
 }
 
+TEST_F(Deploy, StartsFromAGivenStateWithTheOtherParentBesideIt) {
+  scene("given", test::tube(6.5, true));
+  const std::string brief = "--set deploy.open_ramp_ms=1 --set deploy.open_hold_ms=1 --steps 50 --from ";
+  const std::string crimped = newest("given", "crimp").string(), anatomy = newest("given", "mesher").string();
+  for (const std::string& parent : {crimped, anatomy}) {
+    const Outcome out = deploy("elsewhere", "deploy", brief + parent);
+    EXPECT_EQ(out.code, 0) << out.text;
+    EXPECT_TRUE(summary("elsewhere", "deploy")["inputs"].contains(crimped));
+    EXPECT_TRUE(summary("elsewhere", "deploy")["inputs"].contains(anatomy));
+  }
+  const Outcome wrong = deploy("elsewhere", "other", brief + newest("", "stent").string());
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.text.find("expected one of stage 'crimp' or 'mesher'"), std::string::npos) << wrong.text;
+}
+
 TEST_F(Deploy, ThreadsDoNotChangeABit) {
   scene("threads", test::tube(6.5, true));
   const std::string brief = "--set deploy.open_ramp_ms=1 --set deploy.open_hold_ms=1 --steps 300";

@@ -38,11 +38,11 @@ struct Stack {
     mesh.add_shell({"upper", 1}, half, upper.triangles, std::vector<double>(upper.points.size(), 0.5 * h));
     smooth.emplace(contact(0));
   }
-  BodyContact contact(double friction = mu) const {
+  BodyContact contact(double friction = mu, bool even = false) const {
     Candidates candidates(mesh, {K, 0.9, 0.3, 0.05});
     candidates.set_pair("lower", "lower", {false});
     candidates.set_pair("upper", "upper", {false});
-    candidates.set_pair("lower", "upper", {true, 0, 0, friction});
+    candidates.set_pair("lower", "upper", {true, 0, 0, friction, even});
     return BodyContact(std::move(candidates), Law::barrier);
   }
   Points moved(const Vec3& by) const {
@@ -232,14 +232,121 @@ Points rough(const Points& x, double size) {
 }
 
 TEST(ContactTangent, IsTheDerivativeOfTheNormalForcesToSecondOrder) {
+  for (bool even : {false, true}) {
+    Stack stack;
+    BodyContact contact = stack.contact(0, even);
+    const Points x = rough(stack.x, 0.012);
+    contact.begin_step(at(x), 1);
+    EXPECT_GT(tangent_error(contact, x, 1e-5), 0);
+    const double coarse = tangent_error(contact, x, 2e-5), fine = tangent_error(contact, x, 1e-5);
+    EXPECT_LT(fine, 1e-4);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
+  }
+}
+
+TEST(EvenContact, ForcesAreTheGradientAndSumToZero) {
   Stack stack;
-  BodyContact contact = stack.contact(0);
-  const Points x = rough(stack.x, 0.012);
-  contact.begin_step(at(x), 1);
-  EXPECT_GT(tangent_error(contact, x, 1e-5), 0);
-  const double coarse = tangent_error(contact, x, 2e-5), fine = tangent_error(contact, x, 1e-5);
-  EXPECT_LT(fine, 1e-4);
-  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
+  BodyContact contact = stack.contact(0, true);
+  const Points x = rough(stack.x, 0.012), force = contact.forces(x);
+  std::mt19937 random(31);
+  std::normal_distribution<double> normal;
+  Points u(x.size());
+  double slope = 0, size = 0, error[2];
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    u[i] = Vec3(normal(random), normal(random), normal(random));
+    slope -= u[i].dot(force[i]);
+    sum += force[i];
+    moment += x[i].cross(force[i]);
+    size += force[i].norm();
+  }
+  EXPECT_LT(sum.norm(), 1e-13 * size);
+  EXPECT_LT(moment.norm(), 1e-13 * size);
+  const auto energy = [&](double t) {
+    Points y = x;
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += t * u[i];
+    auto ignored = forces_for(at(y));
+    return contact.add_forces(at(y), ignored);
+  };
+  for (int level = 0; level < 2; ++level) {
+    const double step = level == 0 ? 4e-6 : 2e-6;
+    error[level] = std::abs((energy(step) - energy(-step)) / (2 * step) - slope) / std::abs(slope);
+  }
+  EXPECT_LT(error[1], 1e-5);
+  EXPECT_NEAR(error[0] / error[1], 4, 0.6);
+}
+
+/// A small triangle above the middle of an edge of a flat mesh, and on both sides of it: what pushes aside.
+TEST(EvenContact, APointOverAFlatMeshIsNotPushedAside) {
+  const test::Sheet lower = test::sheet(4, 0.5, 0);
+  Points x = lower.points;
+  const int first = int(x.size());
+  for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(2, 0.1, 2), Vec3(0.1, 2, 2)}) x.push_back(corner);
+  double aside[2] = {0, 0};
+  for (bool even : {false, true}) {
+    CollisionMesh mesh(x);
+    mesh.add_shell({"lower", 0}, 0, lower.triangles, std::vector<double>(lower.points.size(), 0.5 * h));
+    mesh.add_shell({"tip", 1}, first, {{0, 1, 2}}, std::vector<double>(3, 0.5 * h));
+    Candidates candidates(mesh, {K, 0.9, 0.3, 0.05});
+    candidates.set_pair("lower", "lower", {false});
+    candidates.set_pair("tip", "tip", {false});
+    candidates.set_pair("lower", "tip", {true, 0, 0, 0, even});
+    BodyContact contact(std::move(candidates), Law::barrier);
+    for (int i = 0; i <= 40; ++i) {
+      Points y = x;
+      for (int k = 0; k < 3; ++k) y[first + k] += Vec3(0.6 + 0.01 * i, 0.8 + 0.0025 * i, 0.06);
+      Vec3 on_tip = Vec3::Zero();
+      const Points force = contact.forces(y);
+      for (int k = 0; k < 3; ++k) on_tip += force[first + k];
+      aside[even] = std::max(aside[even], on_tip.head<2>().norm() / on_tip.z());
+    }
+  }
+  std::printf("a tip over a flat mesh: pushed aside %.3f of the normal force, %.3f when even\n", aside[0],
+              aside[1]);
+  EXPECT_GT(aside[0], 0.05);
+  EXPECT_LT(aside[1], 0.3 * aside[0]);
+}
+
+TEST(EvenContact, FlatLayersArePushedAsideLess) {
+  Stack stack;
+  double square[2] = {0, 0}, most[2] = {0, 0};
+  constexpr int places = 400;
+  for (bool even : {false, true}) {
+    BodyContact contact = stack.contact(0, even);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+    for (int i = 0; i < places; ++i) {
+      const Vec3 force =
+          stack.on_upper(contact.forces(stack.moved(Vec3(uniform(random), uniform(random), 0))));
+      const double aside = force.head<2>().norm() / force.z();
+      square[even] += aside * aside / places;
+      most[even] = std::max(most[even], aside);
+    }
+  }
+  std::printf(
+      "flat layers: pushed aside, of the normal force: root mean square %.4f, most %.4f; even %.4f, %.4f\n",
+      std::sqrt(square[0]), most[0], std::sqrt(square[1]), most[1]);
+  EXPECT_LT(square[1], 0.25 * square[0]);
+}
+
+TEST(EvenContact, FrictionIsWhatItPressesTimesTheCoefficient) {
+  Stack stack;
+  BodyContact rubbing = stack.contact(mu, true), smooth = stack.contact(0, true);
+  rubbing.begin_step(at(stack.x), 1);
+  double least = 1e9, most = 0;
+  for (int i = 1; i <= 300; ++i) {
+    const Points y = stack.moved(0.003 * i * Vec3(0.8, 0.6, 0));
+    rubbing.begin_step(at(y), 1);
+    if (i < 6) continue;
+    const Vec3 normal = stack.on_upper(smooth.forces(y));
+    const Vec3 friction = stack.on_upper(rubbing.forces(y)) - normal;
+    const double ratio = -friction.dot(Vec3(0.8, 0.6, 0)) / (mu * normal.z());
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+  }
+  std::printf("even contact: friction %.4f to %.4f of mu N\n", least, most);
+  EXPECT_GT(least, 0.98);
+  EXPECT_LT(most, 1.02);
 }
 
 TEST(ContactTangent, OfFrictionWhereItSticksAndWhereItSlips) {

@@ -64,6 +64,18 @@ TEST_P(SamplingOfEveryElement, IsAdjointKeepsForceAndConstantsAndItsSpacing) {
   EXPECT_LT(difference.norm(), 1e-11);
   sampling.to_nodes(Points(velocity.size(), Vec3(1, -2, 3)), at_nodes);
   for (const Vec3& u : at_nodes) EXPECT_LT((u - Vec3(1, -2, 3)).norm(), 1e-12);
+  // Rigid rotation of the fluid is one of the nodes, and the torque is kept.
+  const Vec3 rate(2, -1, 3);
+  Points turning;
+  for (const Vec3& p : sampling.points()) turning.push_back(rate.cross(p));
+  sampling.to_nodes(turning, at_nodes);
+  Vec3 torque = Vec3::Zero();
+  for (std::size_t a = 0; a < x.size(); ++a) {
+    EXPECT_LT((at_nodes[a] - rate.cross(x[a])).norm(), 1e-11) << a;
+    torque += x[a].cross(force[a]);
+  }
+  for (std::size_t q = 0; q < at_points.size(); ++q) torque -= sampling.points()[q].cross(at_points[q]);
+  EXPECT_LT(torque.norm(), 1e-10);
   // Every point has another one (within its element or the next) no further than the spacing.
   for (const Vec3& p : sampling.points()) {
     double nearest = 1e9;

@@ -44,9 +44,10 @@ struct BlockScene {
   std::vector<std::shared_ptr<structure::ForceTerm>> terms;
 
   /// A block of side x side x height on the floor z = 0 (and below a ceiling at height + 2 gap, when there is
-  /// one), `gap` above it.
+  /// one), `gap` above it. The floor reaches to +-reach in n cells a side, whose edges do not fit the
+  /// block's.
   BlockScene(double side, double height, std::array<int, 3> cells, double young, double gap, double friction,
-             double modulus, bool ceiling, double reach) {
+             double modulus, bool ceiling, double reach, int n = 7) {
     const auto mesh = structure::solid_box(structure::Shape::hex8, cells, [&](const Vec3& u) -> Vec3 {
       return Vec3(side * (u.x() - 0.5), side * (u.y() - 0.5), gap + height * u.z());
     });
@@ -56,7 +57,6 @@ struct BlockScene {
     std::vector<double> levels{0};
     if (ceiling) levels.push_back(height + 2 * gap);
     std::vector<std::vector<Triangle>> plates;
-    constexpr int n = 7;  // cells a side: edges that do not fit the block's
     for (double z : levels) {
       Points x;
       std::vector<Triangle> triangles;
@@ -82,7 +82,7 @@ struct BlockScene {
     candidates.set_pair("block", "block", {false});
     for (const auto& floor : floors) {
       candidates.set_pair(floor.name, floor.name, {false});
-      candidates.set_pair("block", floor.name, {true, 0, 0, friction});
+      candidates.set_pair("block", floor.name, {true, 0, 0, friction, true});
     }
     contact = std::make_shared<BodyContact>(std::move(candidates), Law::barrier);
     terms = {std::make_shared<structure::SolidTerm>(solid, block), contact};

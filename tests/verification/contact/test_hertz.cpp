@@ -1,6 +1,6 @@
-// A rigid sphere pressed into an elastic half space, against Hertz: a quarter of it in hexahedra (or
-// tetrahedra), the displacement of a point force (Boussinesq) on the far faces, contact between the meshes of
-// sphere and block, implicit equilibrium.
+// A rigid sphere pressed into an elastic half space, against Hertz: a quarter of it in hexahedra, the
+// displacement of a point force (Boussinesq) on the far faces, contact between the meshes of sphere and
+// block, implicit equilibrium.
 #include <gtest/gtest.h>
 
 #include "../solids/reference.hpp"
@@ -74,6 +74,7 @@ Hertz press(structure::Shape shape, double a, double F, double delta, int cells)
   Candidates candidates(std::move(all), {300 * E, 0.9, 20 * h, 5 * h});
   candidates.set_pair("block", "block", {false});
   candidates.set_pair("sphere", "sphere", {false});
+  candidates.set_pair("block", "sphere", {true, 0, 0, 0, true});
   const auto contact = std::make_shared<BodyContact>(std::move(candidates), Law::barrier);
 
   solve::Supports supports;
@@ -133,8 +134,7 @@ Hertz press(structure::Shape shape, double a, double F, double delta, int cells)
 
 }  // namespace
 
-// Open: not yet run to its end (docs/verification/contact.md).
-TEST(Hertz, DISABLED_RigidSphereOnAnElasticHalfSpace) {
+TEST(Hertz, RigidSphereOnAnElasticHalfSpace) {
   const auto rows = reference_rows("hertz.csv");
   VALSALVA_NEEDS(rows);
   std::printf("| element | cells over a | delta | F | Hertz | a | Hertz | p0 | Hertz | Newton |\n");
@@ -150,13 +150,10 @@ TEST(Hertz, DISABLED_RigidSphereOnAnElasticHalfSpace) {
                       std::abs(out.pressure / p0 - 1)};
   };
   run(structure::Shape::hex8, 0, 4);
-  run(structure::Shape::hex8, 0, 6);
-  const auto fine = run(structure::Shape::hex8, 0, 8);
+  const auto fine = run(structure::Shape::hex8, 0, 6);
   EXPECT_LT(fine[0], 0.03);
   EXPECT_LT(fine[1], 0.03);
   EXPECT_LT(fine[2], 0.05);
-  run(structure::Shape::hex8, 1, 6);
-  run(structure::Shape::tet4, 0, 6);
 }
 
 }  // namespace valsalva::contact

@@ -2,58 +2,23 @@
 // grid, a few milliseconds.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "core/units.hpp"
-#include "coupling/immersed_flow.hpp"
 #include "mpi_for_all.hpp"
-#include "synthetic_valve.hpp"
+#include "valve_rig.hpp"
 
 namespace {
 
 using namespace valsalva;
 using units::pa_per_mmHg;
 
-constexpr double h = 1.5, radius = 12.5;
-
-// The valve, its tube and the coupled solver.
-struct Rig {
-  test::ValveMesh mesh;
-  std::unique_ptr<fluid::Flow> flow;
-  std::unique_ptr<coupling::ImmersedFlow> system;
-  double time_s = 0;
-  int ring = 0;
-
-  Rig() {
-    test::SyntheticValve valve;
-    valve.spacing_mm = 0.5 * h;
-    mesh = test::synthetic_valve(valve);
-    const fluid::Grid grid{{24, 24, 30}, Vec3(-18, -18, -15), h};
-    flow = std::make_unique<fluid::Flow>(MPI_COMM_SELF, grid, fluid::Boundaries{}, fluid::FlowParameters{});
-    flow->solids().set_lumen([](const Vec3& x) { return std::hypot(x.x(), x.y()) - radius; });
-    ring = flow->solids().add_body("ring");
-    flow->solids().mark_segments(ring, mesh.shell.reference, mesh.attachment, 0.8 * h);
-    auto shell = std::make_unique<coupling::ImmersedShell>(
-        MPI_COMM_SELF, test::pericardial_shell(mesh), mesh.shell.reference, mesh.shell.reference,
-        mesh.attached, mesh.leaflet, coupling::Spacing{{2e5, 0.6 * h}, 1.3 * h});
-    system =
-        std::make_unique<coupling::ImmersedFlow>(*flow, std::move(shell), coupling::ImmersedFlowSettings{});
-  }
-
-  // The aorta rises to 40 mmHg in 10 ms behind a characteristic resistance.
+// The valve and its checks of every step.
+struct Rig : test::ValveRig {
   void run_to(double end_s) {
-    while (time_s < end_s) {
-      const double flow_mL = flow->flow_through(fluid::End::high) / 1e3;
-      const coupling::ImmersedStep step = system->step(end_s - time_s, [&](double dt) {
-        const double s = std::min(1.0, (time_s + dt) / 0.01);
-        flow->set_end_pressure(fluid::End::high, pa_per_mmHg * (40 * s * s * (3 - 2 * s) + 0.042 * flow_mL));
-      });
-      time_s = step.dt_s >= end_s - time_s ? end_s : time_s + step.dt_s;
+    ValveRig::run_to(end_s, [](const coupling::ImmersedStep& step) {
       EXPECT_LT(step.dt_s, step.critical_s);
       EXPECT_LE(step.fluid.cfl, coupling::StepLimits{}.cfl);
-    }
+    });
   }
 };
 

@@ -1,0 +1,122 @@
+#include "flow_scene.hpp"
+
+#include <omp.h>
+
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "core/log.hpp"
+#include "core/progress.hpp"
+#include "core/provenance.hpp"
+#include "flow_scene/scene.hpp"
+#include "state/checkpoint.hpp"
+
+namespace valsalva::cycle {
+
+namespace {
+
+using flow_scene::FlowScene;
+
+state::State state_of(const StageContext& context, const FlowScene& scene) {
+  state::State out = state::begin(context, scene.time_s(), scene.steps());
+  out.restart = scene.save();
+  out.images["fluid"] = scene.image();
+  out.final = scene.finished();
+  return out;
+}
+
+void write_tables(const StageContext& context, FlowScene& scene) {
+  const auto profiles = scene.profiles();  // collective
+  if (mpi::rank(context.comm) != 0) return;
+  scene.history().write(context.run.file("history.csv"));
+  for (const auto& [name, text] : profiles) write_atomically(context.run.file(name), text);
+}
+
+void save(const StageContext& context, FlowScene& scene) {
+  state::save(context, state_of(context, scene));
+  write_tables(context, scene);
+}
+
+void record_files(StageContext& context) {
+  const auto record = [&](const Case& entry, const std::string& key) {
+    if (entry.text(key).empty()) return;
+    const auto path = context.scene.resolve(entry.text(key));
+    context.summary.inputs[path.string()] = sha256_of_path(path);
+  };
+  for (const Case& entry : context.scene.entries("obstacle")) record(entry, "obstacle.file");
+  for (const Case& entry : context.scene.entries("boundary")) record(entry, "boundary.factor_file");
+}
+
+}  // namespace
+
+bool is_flow_scene(const Case& scene) {
+  return flow_scene::has_box(scene);
+}
+
+void run_flow_scene(StageContext& context) {
+  omp_set_num_threads(1);  // the ranks share the work
+  FlowScene scene(context.scene, context.comm);
+  const fluid::Grid& grid = scene.flow().grid();
+  log::info("fluid: {} x {} x {} cells of {} mm", grid.cells[scene.frame().solver_axis(0)],
+            grid.cells[scene.frame().solver_axis(1)], grid.cells[scene.frame().solver_axis(2)], grid.h);
+  record_files(context);
+  if (const auto before = state::resume(context)) {
+    scene.load(*before);
+    log::info("continued from step {} at t = {:.6g} s", scene.steps(), scene.time_s());
+  } else {
+    scene.add_row();
+  }
+  const long first = scene.steps();
+  Progress progress("cycle", scene.end_s(), context.speaks);
+  progress.start_at(scene.time_s());
+  state::CheckpointClock clock(context);
+  try {
+    while (!scene.finished() && !(context.steps && scene.steps() - first >= *context.steps)) {
+      scene.step();
+      if (scene.row_due()) scene.add_row();
+      progress.update(scene.time_s(),
+                      fmt::format("t = {:.4g} s, dt = {:.3g} s", scene.time_s(), scene.step_s()));
+      if (mpi::any(context.comm, interrupted())) {
+        write_tables(context, scene);
+        state::stop(context, state_of(context, scene));
+      }
+      if (clock.due(context.comm)) save(context, scene);
+    }
+  } catch (const NumericalFailure& failure) {
+    if (mpi::rank(context.comm) == 0) scene.history().write(context.run.file("history.csv"));
+    const auto last = context.run.latest_state();
+    throw NumericalFailure(
+        "{}. t = {:.6g} s, step {}. {}", failure.what(), scene.time_s(), scene.steps(),
+        last ? "The last good state is " + last->string() : std::string("No state was written before"));
+  }
+  context.summary.metrics = scene.metrics();
+  context.summary.metrics["cells"] = static_cast<double>(grid.all_cells());
+  context.summary.metrics["divergence_max_per_s"] = scene.flow().divergence();
+  context.summary.steps = scene.steps();
+  context.summary.simulated_s = scene.time_s();
+  save(context, scene);
+}
+
+void check_flow_scene(const Case& scene) {
+  if (scene.has("body"))
+    throw InputError("{}: the scene has fluid.box_mm and [[body]]; rigid bodies in the box are [[obstacle]]",
+                     scene.file().string());
+  FlowScene built(scene, MPI_COMM_SELF);
+  built.add_row();
+}
+
+Estimate estimate_flow_scene(const Case& scene, int ranks) {
+  // Measured: a step of 0.06 microseconds a cell on one core (docs/decisions/fluid.md).
+  FlowScene built(scene, MPI_COMM_SELF);
+  built.step();
+  const double cells = static_cast<double>(built.flow().grid().all_cells());
+  const bool rk3 = scene.text("fluid.time_scheme") == "rk3";
+  const double step = scene.real("fluid.step_s") > 0 ? scene.real("fluid.step_s") : built.limit_s();
+  const double steps = std::max(built.end_s() / step, double(scene.integer("fluid.history_rows")));
+  return {
+      steps * cells * 0.06e-6 * (rk3 ? 3 : 1) / (ranks > 1 ? 1.7 : 1.0), 100 + 2e-4 * cells,
+      "second order in the open, first order at staircase walls (docs/verification/fluid.md); the step is "
+      "that of the start, and shrinks where the flow gets faster"};
+}
+
+}  // namespace valsalva::cycle
