@@ -41,6 +41,11 @@ void add_bodies(state::State& out, const assembly::Scene& scene) {
     if (!field.stretch.empty()) mesh.cell_data["stretch"] = Array::of(field.stretch);
     for (double& stress : field.von_mises_Pa) stress /= units::pa_per_kPa;
     if (!field.von_mises_Pa.empty()) mesh.cell_data["von_mises_kPa"] = Array::of(field.von_mises_Pa);
+    for (auto& [name, layer] : field.layers) {
+      std::vector<std::size_t> shape{layer.values.size() / layer.components};
+      if (layer.components > 1) shape.push_back(layer.components);
+      mesh.cell_data[name] = Array::of(std::move(layer.values), std::move(shape));
+    }
     out.meshes[body.name] = std::move(mesh);
   }
 }

@@ -1,5 +1,6 @@
 #include "assembly/probes.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
@@ -47,6 +48,52 @@ struct Probes::Present {
   bool known = false;
 };
 
+namespace {
+
+constexpr double kPa = 1 / units::pa_per_kPa;
+
+// The two principal stresses of the surface: without the normal's, which is zero.
+std::pair<double, double> principal(const structure::LayerState& s) {
+  const Vec3 all = Eigen::SelfAdjointEigenSolver<Mat3>(s.cauchy_Pa, Eigen::EigenvaluesOnly).eigenvalues();
+  const double sum = all.sum(), squares = all.squaredNorm();
+  const double half = std::sqrt(std::max(0.0, 0.5 * squares - 0.25 * sum * sum));
+  return {0.5 * sum + half, 0.5 * sum - half};
+}
+
+double along(const Mat3& stress, const Vec3& direction) {
+  return direction.dot(stress * direction);
+}
+
+void add_layers(const structure::KirchhoffShell& shell, const std::vector<structure::LayerStates>& states,
+                std::map<std::string, CellField>& out) {
+  const auto add = [&](const char* layer, const structure::LayerState& s, const Vec3* fibre) {
+    const auto field = [&](const char* name) -> CellField& {
+      return out[fmt::format("{}_{}_kPa", name, layer)];
+    };
+    const auto [most, least] = principal(s);
+    field("principal_max").values.push_back(kPa * most);
+    field("principal_min").values.push_back(kPa * least);
+    field("von_mises").values.push_back(kPa * s.von_mises_Pa);
+    if (fibre) field("fibre_stress").values.push_back(kPa * along(s.cauchy_Pa, *fibre));
+    CellField& tensor = field("stress");
+    tensor.components = 6;
+    for (const auto& [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}})
+      tensor.values.push_back(kPa * s.cauchy_Pa(i, j));
+  };
+  const auto& fibres = shell.mesh().fibre1;
+  for (std::size_t e = 0; e < states.size(); ++e) {
+    const structure::LayerStates& s = states[e];
+    Vec3 fibre = Vec3::Zero();
+    if (!fibres.empty()) fibre = (s.gradient * fibres[e]).normalized();
+    const Vec3* given = fibres.empty() ? nullptr : &fibre;
+    add("bottom", s.bottom, given);
+    add("middle", s.middle, given);
+    add("top", s.top, given);
+  }
+}
+
+}  // namespace
+
 ElementField element_field(const BuiltBody& body, const structure::Configuration& now) {
   ElementField field;
   if (body.shell)
@@ -56,16 +103,17 @@ ElementField element_field(const BuiltBody& body, const structure::Configuration
       field.von_mises_Pa.push_back(s.von_mises_Pa);
       field.exponent = std::max(field.exponent, s.exponent);
     }
-  if (body.kirchhoff)
-    for (int e = 0; e < body.kirchhoff->elements(); ++e) {
-      const auto s = body.kirchhoff->layer_states(now.x, e, body.at.offset);
+  if (body.kirchhoff) {
+    const auto states = body.kirchhoff->layer_states(now.x, body.at.offset);
+    add_layers(*body.kirchhoff, states, field.layers);
+    for (const structure::LayerStates& s : states) {
       field.stretch.push_back(
           std::max({s.bottom.stretch_major, s.middle.stretch_major, s.top.stretch_major}));
       field.von_mises_Pa.push_back(
           std::max({s.bottom.von_mises_Pa, s.middle.von_mises_Pa, s.top.von_mises_Pa}));
-      field.exponent =
-          std::max({field.exponent, s.bottom.exponent, s.middle.exponent, s.top.exponent});
+      field.exponent = std::max({field.exponent, s.bottom.exponent, s.middle.exponent, s.top.exponent});
     }
+  }
   if (body.beams)
     for (int e = 0; e < body.beams->elements(); ++e)
       field.stretch.push_back(
@@ -92,12 +140,13 @@ bool is_one_of(const std::string& word, std::initializer_list<const char*> words
 }
 
 void check_components(const std::string& quantity, const std::string& component, const std::string& what) {
-  const bool of_stress =
-      is_one_of(component, {"xx", "yy", "zz", "xy", "yz", "zx", "principal_max", "principal_min", "mean"});
-  if (of_stress != (quantity == "stress"))
+  const bool of_stress = is_one_of(
+      component, {"xx", "yy", "zz", "xy", "yz", "zx", "principal_max", "principal_min", "mean", "fibre"});
+  if (of_stress != (quantity == "stress") && !(quantity == "stress" && component == "direction"))
     throw InputError("{}: component is \"{}\" for quantity = \"{}\"; expected {}", what, component, quantity,
                      of_stress ? "x, y, z, magnitude or direction"
-                               : "xx, yy, zz, xy, yz, zx, principal_max, principal_min or mean");
+                               : "xx, yy, zz, xy, yz, zx, principal_max, principal_min, mean, fibre or "
+                                 "direction");
 }
 
 }  // namespace
@@ -112,12 +161,19 @@ void Probes::check(const Probe& p, const Scene& built, const std::string& what) 
     if (p.quantity == "rotation" && built.system->rotation_of(nodes.front()) < 0)
       throw InputError("{}: of = '{}' are not beam nodes; expected a set of those", what, p.of);
   } else if (is_one_of(p.quantity, {"stretch", "von_mises", "stress"})) {
-    const Kind kind = built.body(p.of, what).kind;
-    const bool none = kind == Kind::rigid || (kind == Kind::beams && p.quantity != "stretch") ||
-                      (kind == Kind::shell && p.quantity == "stress");
+    const BuiltBody& body = built.body(p.of, what);
+    const bool none = body.kind == Kind::rigid || (body.kind == Kind::beams && p.quantity != "stretch") ||
+                      (body.shell && p.quantity == "stress");
     if (none)
       throw InputError("{}: body '{}' has no {}; expected a {}", what, p.of, p.quantity,
-                       p.quantity == "stress" ? "solid" : "shell or solid");
+                       p.quantity == "stress" ? "solid or Kirchhoff shell" : "shell or solid");
+    if (p.layer != "largest" && !body.kirchhoff)
+      throw InputError("{}: layer = \"{}\", but body '{}' is no Kirchhoff shell", what, p.layer, p.of);
+    if (p.layer == "bending" && p.quantity != "stress")
+      throw InputError("{}: layer = \"bending\" for quantity = \"{}\"; expected stress", what, p.quantity);
+    if (p.component == "fibre" && !(body.kirchhoff && !body.kirchhoff->mesh().fibre1.empty()))
+      throw InputError("{}: component = \"fibre\", but body '{}' is no Kirchhoff shell with fibres", what,
+                       p.of);
   } else if (is_one_of(p.quantity, {"reaction", "reaction_moment"})) {
     if (std::none_of(built.supports.begin(), built.supports.end(), [&](auto& s) { return s.name == p.of; }))
       throw InputError("{}: of = '{}'; expected the name of a [[support]]", what, p.of);
@@ -143,8 +199,8 @@ Probes::Probes(const Case& scene, const Scene& built) {
   for (const Case& entry : scene.entries("probe")) {
     const auto text = [&](const char* key) { return entry.text(std::string("probe.") + key); };
     const auto& d = entry.reals("probe.direction");
-    Probe p{text("name"),      text("quantity"),   text("of"),  text("component"),
-            text("statistic"), {d[0], d[1], d[2]}, std::nullopt};
+    Probe p{text("name"),      text("quantity"), text("of"),         text("component"),
+            text("statistic"), text("layer"),    {d[0], d[1], d[2]}, std::nullopt};
     const std::string what = fmt::format("{}: [[probe]] '{}'", scene.file().string(), p.name);
     if (p.name.empty()) throw InputError("{}: name is missing; expected one", what);
     if (!(p.direction.norm() > 0)) throw InputError("{}: direction is zero; expected a direction", what);
@@ -177,6 +233,7 @@ double Probes::of_elements(const Probe& p, const Scene& scene) const {
   const BuiltBody& body = scene.body(p.of, p.name);
   const structure::Configuration& now = scene.system->state;
   if (body.solid && (p.point || p.quantity == "stress")) return of_solid(p, body, now);
+  if (body.kirchhoff) return of_layers(p, body, now);
   const ElementField field = element_field(body, now);
   const bool stretch = p.quantity == "stretch";
   const std::vector<double>& values = stretch ? field.stretch : field.von_mises_Pa;
@@ -195,14 +252,57 @@ double Probes::of_elements(const Probe& p, const Scene& scene) const {
   return factor * values[nearest];
 }
 
+double Probes::of_layers(const Probe& p, const BuiltBody& body, const structure::Configuration& now) const {
+  const structure::KirchhoffShell& shell = *body.kirchhoff;
+  const auto& fibres = shell.mesh().fibre1;
+  const auto measure = [&](const structure::LayerState& s, const Mat3& gradient, std::size_t e) -> double {
+    if (p.quantity == "stretch") return s.stretch_major;
+    if (p.quantity == "von_mises") return kPa * s.von_mises_Pa;
+    if (p.component == "principal_max") return kPa * principal(s).first;
+    if (p.component == "principal_min") return kPa * principal(s).second;
+    if (p.component == "mean") return kPa * s.cauchy_Pa.trace() / 3;
+    if (p.component == "fibre") return kPa * along(s.cauchy_Pa, (gradient * fibres[e]).normalized());
+    if (p.component == "direction") {
+      const Vec3 carried = gradient * p.direction;
+      return carried.norm() > 0 ? kPa * along(s.cauchy_Pa, carried.normalized()) : 0;
+    }
+    return kPa * s.cauchy_Pa(p.component[0] - 'x', p.component[1] - 'x');
+  };
+  const auto of_layer = [&](const structure::LayerStates& s, std::size_t e) -> double {
+    if (p.layer == "bottom") return measure(s.bottom, s.gradient, e);
+    if (p.layer == "middle") return measure(s.middle, s.gradient, e);
+    if (p.layer == "top") return measure(s.top, s.gradient, e);
+    if (p.layer == "bending") {
+      structure::LayerState bent;
+      bent.cauchy_Pa = 0.5 * (s.top.cauchy_Pa - s.bottom.cauchy_Pa);
+      return measure(bent, s.gradient, e);
+    }
+    return std::max(
+        {measure(s.bottom, s.gradient, e), measure(s.middle, s.gradient, e), measure(s.top, s.gradient, e)});
+  };
+  double least = std::numeric_limits<double>::infinity(), found = -least;
+  const auto states = shell.layer_states(now.x, body.at.offset);
+  for (std::size_t e = 0; e < states.size(); ++e) {
+    const double value = of_layer(states[e], e);
+    if (!p.point) {
+      found = std::max(found, value);
+      continue;
+    }
+    Vec3 middle = Vec3::Zero();
+    for (int a : body.mesh.triangles[e]) middle += reference_[body.at.offset + a] / 3;
+    if (const double d = (middle - *p.point).norm(); d < least) least = d, found = value;
+  }
+  return found;
+}
+
 double Probes::of_solid(const Probe& p, const BuiltBody& body, const structure::Configuration& now) const {
   const auto measure = [&](const structure::SolidPoint& at) -> double {
     if (p.quantity == "stretch") return at.stretch[2];
-    const double kPa = 1 / units::pa_per_kPa;
     if (p.quantity == "von_mises") return kPa * at.von_mises_Pa;
     if (p.component == "principal_max") return kPa * at.principal_Pa[2];
     if (p.component == "principal_min") return kPa * at.principal_Pa[0];
     if (p.component == "mean") return kPa * at.cauchy_Pa.trace() / 3;
+    if (p.component == "direction") return kPa * along(at.cauchy_Pa, p.direction);
     return kPa * at.cauchy_Pa(p.component[0] - 'x', p.component[1] - 'x');
   };
   double least = std::numeric_limits<double>::infinity(), found = -least;

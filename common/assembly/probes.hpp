@@ -11,13 +11,17 @@
 //   energies                nJ     kinetic: of all; stored: of all, or of one body, tie, tether or pair
 //   momentum                g_mm_per_s, angular_momentum (about a point) g_mm2_per_s   of a body, or of all
 //   stretch                 ratio  principal stretch (beams: 1 + largest strain): the largest of a body, or
-//   that
-//                                  nearest to a point of the reference
-//   von_mises, stress       kPa    Cauchy; likewise. Shells: von Mises only
+//                                  that nearest to a point of the reference
+//   von_mises, stress       kPa    Cauchy; likewise. Kirchhoff shells: at the bottom, the middle (the
+//   membrane
+//                                  stress) or the top, the bending stress (top - bottom)/2, or the largest of
+//                                  the three; along the first fibre, or along a direction that was projected
+//                                  on the reference shape and moves with it. Hinge shells: von Mises only
 //   volume                  mm3    enclosed by a body's surface, or that of a volume load
 //   pressure                kPa    of a volume load
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,7 +40,7 @@ class Probes {
 
  private:
   struct Probe {
-    std::string name, quantity, of, component, statistic;
+    std::string name, quantity, of, component, statistic, layer;
     Vec3 direction;
     std::optional<Vec3> point;
   };
@@ -45,6 +49,7 @@ class Probes {
   static void check(const Probe& probe, const Scene& built, const std::string& what);
   double of_vectors(const Probe& probe, const Points& vectors) const;
   double of_elements(const Probe& probe, const Scene& scene) const;
+  double of_layers(const Probe& probe, const BuiltBody& body, const structure::Configuration& now) const;
   double of_solid(const Probe& probe, const BuiltBody& body, const structure::Configuration& now) const;
   double penetration(const Probe& probe, const Scene& scene) const;
   double of_support(const Probe& probe, const Scene& scene, Present& present) const;
@@ -55,10 +60,20 @@ class Probes {
   Points reference_;
 };
 
+/// Values of the elements, some numbers each.
+struct CellField {
+  std::vector<double> values;
+  std::size_t components = 1;
+};
+
 /// Largest stretch and von Mises stress (Pa) of every element of a body at positions x of the system.
 struct ElementField {
   std::vector<double> stretch, von_mises_Pa;
-  double exponent = 0;  ///< the largest Q of the law's exp(Q): beyond 6 it is continued by its Taylor polynomial
+  double exponent =
+      0;  ///< the largest Q of the law's exp(Q): beyond 6 it is continued by its Taylor polynomial
+  /// Kirchhoff shells: stress_<layer>_kPa (xx yy zz xy yz xz), principal_max_, principal_min_, von_mises_
+  /// and, with fibres, fibre_stress_<layer>_kPa, layer = bottom, middle, top.
+  std::map<std::string, CellField> layers;
 };
 ElementField element_field(const BuiltBody& body, const structure::Configuration& now);
 

@@ -294,8 +294,13 @@ void declare_probe(Schema& schema) {
       "volume: body, or volume load; pressure: volume load");
   schema.choice("probe.component", "magnitude",
                 {"x", "y", "z", "magnitude", "direction", "xx", "yy", "zz", "xy", "yz", "zx", "principal_max",
-                 "principal_min", "mean"},
-                "Component; direction: along probe.direction; of stress (Cauchy): xx to mean");
+                 "principal_min", "mean", "fibre"},
+                "Component; direction: along probe.direction (of shells: as it moves with the sheet); of "
+                "stress (Cauchy): xx to mean, direction, fibre (of shells: the first family)");
+  schema.choice(
+      "probe.layer", "largest", {"largest", "bottom", "middle", "top", "bending"},
+      "stretch, von_mises, stress of Kirchhoff shells: at this height; middle: the membrane stress; "
+      "bending: stress at the top less that at the bottom, by two; largest: of bottom, middle, top");
   schema.reals(
       "probe.point_mm", {}, 0, unlimited(),
       "stretch, von_mises, stress: at the element nearest to this point of the reference; empty: the "

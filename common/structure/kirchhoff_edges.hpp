@@ -1,15 +1,14 @@
-// The direction of a triangulated surface across each of its edges: what a Kirchhoff-Love shell of nodes
-// without rotations bends about.
+// The slope and the bending of a triangulated surface at the middle of each of its edges, from which a
+// Kirchhoff-Love shell of nodes without rotations takes its curvature.
 //
-// At the middle of every edge stands the vector d = dx/dy, the derivative of the position across the edge (y
-// in the reference tangent plane of the edge, outward of its first triangle), as a weighted sum of nodes near
-// by:
+// With s along the edge and y across it (in the reference tangent plane of the edge, outward of its first
+// triangle) every edge has four vectors: d = x,y and x,ss x,sy x,yy, as weighted sums of nodes near by:
 //   inner, free, hinged   the weights are exact for quadratic functions of the place in that plane, of least
 //                         norm among the nodes of the edge's triangles and their neighbours (moving least
 //                         squares, Lancaster and Salkauskas 1981, with weights 1/(d^2 + h^2/20)^4)
-//   symmetry              along the plane's normal: d = m (m . sum)
-//   clamped               R d0, as the clamp has turned
-// One vector an edge, seen by both triangles: hence the patch test on any mesh (kirchhoff_shell.hpp).
+//   symmetry              d and x,sy along the plane's normal m (m . sum), x,ss and x,yy in the plane
+//   clamped               d = R d0, x,ss and x,sy likewise, as the clamp has turned; x,yy knows d
+// One d an edge, seen by both triangles: hence the patch test on any mesh (kirchhoff_shell.hpp).
 #pragma once
 
 #include <map>
@@ -56,36 +55,54 @@ class ShellEdges {
   /// Edge k of a triangle runs from its corner k to the next one.
   const std::array<int, 3>& of_triangle(int triangle) const { return of_triangle_[triangle]; }
 
-  /// Nodes, then edge vectors: the "vertices" on which a triangle's energy depends.
-  int vertices() const { return nodes_ + count(); }
+  /// Nodes, then four vectors an edge: the "vertices" on which a triangle's energy depends.
+  int vertices() const { return nodes_ + vectors * count(); }
+  static constexpr int vectors = 4;  ///< d, x,ss, x,sy, x,yy
+  /// The first of an edge's vectors, d.
+  int vertex(int edge) const { return nodes_ + vectors * edge; }
+  /// How far an edge's second derivatives are to be trusted, 0 to 1: 0 where too few nodes were near (a strip
+  /// of one row; they are zero), less than 1 where nodes lie so that the sum of the weights' absolute values,
+  /// times the area of the edge's triangles, exceeds 10 (4 to 8 on regular meshes).
+  double trust(int edge) const { return rows_[edge].trust; }
   /// From nodes at x[offset...]. `clamps`: rotations of the clamps since the reference; identity if not
   /// given.
   void gather(const Points& x, int offset, Points& vertices, std::span<const Mat3> clamps = {}) const;
-  /// Their change with a change of the nodes.
-  void gather_change(const Points& direction, int offset, Points& vertices) const;
   /// The transpose: forces on vertices become forces on nodes, added to f[offset...].
   void scatter(const Points& vertex_forces, Points& f, int offset) const;
-  /// Adds a stiffness of some vertices (3 a vertex) to that of the nodes.
+  /// The nodes that move the vectors of a triangle's edges, its own first, and their weights (4 rows an
+  /// edge).
+  void reach(int triangle, std::vector<int>& nodes, Eigen::MatrixXd& weights) const;
+  /// k <- P k P^T for a matrix k of the vectors of an edge beside others, 3 a vector from row and column
+  /// `first`; P maps the weighted sums to the vectors (not the identity at symmetry planes).
+  void project(int edge, int first, Eigen::Ref<Eigen::MatrixXd> k) const;
+  /// Adds a stiffness of some nodes and vectors d (by vertex, 3 each) to that of the nodes.
   void add_matrix(std::span<const int> vertices, const Eigen::Ref<const Eigen::MatrixXd>& k, BlockMatrix& out,
                   int offset) const;
-  /// Sums of the weights' absolute values: of each vertex, and their transpose.
-  std::vector<double> gather_bound() const;
+  /// Adds bounds of the stiffness of nodes and vectors d to that of the nodes.
   void scatter_bound(const std::vector<double>& vertex_bound, std::vector<double>& bound, int offset) const;
 
  private:
   struct Row {
     int begin, end;  // into terms_
-    Vec3 fixed = Vec3::Zero();
-    int clamp = -1;      // fixed turns with it
-    int projector = -1;  // index of the plane's normal
+    Eigen::Matrix<double, 3, vectors> fixed = Eigen::Matrix<double, 3, vectors>::Zero();
+    int clamp = -1;  // fixed turns with it
+    int plane = -1;  // index of the symmetry plane's normal
+    double trust = 1;
   };
   struct Term {
     int node;
-    double weight;
+    std::array<double, vectors> weight;
   };
   void find_edges(const std::vector<Triangle>& triangles, const EdgeConditions& conditions);
   void weigh(const Points& x);
-  std::vector<Term> weights(const Points& x, const ShellEdge& e, const Vec3& along, const Vec3& across) const;
+  const Row& row_of_d(int vertex) const;
+  struct Fit {
+    std::vector<Term> terms;
+    double by_slope = 0;  // weight of a known d in x,yy
+    bool quadratic = true;
+  };
+  Fit fit(const Points& x, const ShellEdge& e, const Vec3& along, const Vec3& across, bool slope_known) const;
+  double trust_in(const Points& x, const ShellEdge& e, const Fit& fit) const;
 
   int nodes_ = 0;
   std::vector<ShellEdge> edges_;

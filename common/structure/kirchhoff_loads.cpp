@@ -22,7 +22,7 @@ EdgeMomentTerm::EdgeMomentTerm(std::string name, std::shared_ptr<const Kirchhoff
       throw InputError("{}: edge {}-{} is not on the border of the shell", name_, edge[0], edge[1]);
     const auto [a, b] = shell_->edges().edge(found->second).nodes;
     const Points& x = shell_->mesh().reference;
-    edges_.push_back({{a, b, shell_->nodes() + found->second}, (x[b] - x[a]).norm()});
+    edges_.push_back({{a, b, shell_->edges().vertex(found->second)}, (x[b] - x[a]).norm()});
   }
 }
 

@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 struct GaussPoint {
   double at, weight;  // on [-1/2, 1/2]
@@ -43,10 +42,6 @@ std::vector<GaussPoint> gauss(int points) {
     default:
       throw InputError("shell: {} quadrature points through the thickness; expected 1 to 5", points);
   }
-}
-
-Vector3d voigt(const Matrix2d& m) {
-  return {m(0, 0), m(1, 1), m(0, 1)};
 }
 
 // x -> a x a for symmetric a and x, as it acts on engineering strains (11, 22, 2 12).

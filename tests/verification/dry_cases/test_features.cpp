@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "assembly/prestress.hpp"
+#include "box_obj.hpp"
 #include "materials/superelastic.hpp"
 #include "run_case.hpp"
 
@@ -379,22 +380,7 @@ component = "x"
 [dynamics]
 end_s = 0.05
 )";
-  const char* slab = R"(v -4 -4 -3
-v 16 -4 -3
-v 16 6 -3
-v -4 6 -3
-v -4 -4 0
-v 16 -4 0
-v 16 6 0
-v -4 6 0
-f 4 3 2 1
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-)";
-  const auto run = CaseRun::of_text(block, {{"slab.obj", slab}});
+  const auto run = CaseRun::of_text(block, {{"slab.obj", test::box_obj({-4, -4, -3}, {16, 6, 0})}});
   run->to_end();
   const double expected = 0.05 * 9810 * (std::sin(M_PI / 6) - 0.3 * std::cos(M_PI / 6));
   EXPECT_NEAR(run->probe("speed_mm_per_s"), expected, 0.02 * expected);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "box_obj.hpp"
 #include "run_case.hpp"
 
 using namespace valsalva;
@@ -8,21 +9,7 @@ using test::CaseRun;
 namespace {
 
 // A box of 2 x 1 x 4 mm and 8 mg as a closed surface, in a file of its own.
-const char* box_obj = R"(v -1 -0.5 -2
-v 1 -0.5 -2
-v 1 0.5 -2
-v -1 0.5 -2
-v -1 -0.5 2
-v 1 -0.5 2
-v 1 0.5 2
-v -1 0.5 2
-f 4 3 2 1
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-)";
+const std::string box_file = test::box_obj({-1, -0.5, -2}, {1, 0.5, 2});
 
 const std::string box = R"(
 [[body]]
@@ -36,7 +23,7 @@ density_g_per_mm3 = 1e-3
 }  // namespace
 
 TEST(DryRigid, PropertiesOfABox) {
-  const auto run = CaseRun::of_text(box + "[dynamics]\nend_s = 1e-3\n", {{"box.obj", box_obj}});
+  const auto run = CaseRun::of_text(box + "[dynamics]\nend_s = 1e-3\n", {{"box.obj", box_file}});
   const auto& p = run->scene.rigid.at(0)->properties();
   EXPECT_NEAR(p.mass_g, 8e-3, 1e-15);
   EXPECT_LT(p.centre.norm(), 1e-14);
@@ -59,7 +46,7 @@ step_s = )" +
            step + "\n";
   };
   const auto worst_energy = [&](const char* step) {
-    const auto run = CaseRun::of_text(text(step), {{"box.obj", box_obj}});
+    const auto run = CaseRun::of_text(text(step), {{"box.obj", box_file}});
     const structure::RigidBody& body = *run->scene.rigid.at(0);
     const Vec3 turning = body.angular_momentum(), moving = body.momentum();
     const double energy = body.kinetic_energy();
@@ -145,7 +132,7 @@ friction = 0.3
 [dynamics]
 end_s = 0.1
 )",
-                                    {{"box.obj", box_obj}});
+                                    {{"box.obj", box_file}});
   run->to_end();
   const double expected = 0.1 * 9810 * (std::sin(M_PI / 6) - 0.3 * std::cos(M_PI / 6));
   EXPECT_NEAR(run->scene.rigid[0]->velocity().x(), expected, 0.01 * expected);
@@ -179,12 +166,12 @@ component = "z"
 solver = "quasi_static"
 load_steps = 2
 )",
-                                    {{"box.obj", box_obj}});
+                                    {{"box.obj", box_file}});
   run->to_end();
   EXPECT_NEAR(run->probe("push_N"), 8e-3 * 9810e-6, 1e-3 * 8e-3 * 9810e-6);
 }
 
 TEST(DryRigid, NewtonRefusesFreeBodies) {
-  EXPECT_THROW(CaseRun::of_text(box + "[dynamics]\nsolver = \"static\"\n", {{"box.obj", box_obj}}),
+  EXPECT_THROW(CaseRun::of_text(box + "[dynamics]\nsolver = \"static\"\n", {{"box.obj", box_file}}),
                InputError);
 }

@@ -21,6 +21,26 @@ TEST(DryShell, CantileverFollowsTheElastica) {
   EXPECT_GE(compared, 8);
 }
 
+// The end moment rolls the strip up: tip positions of the table (exact), the circle closed at half of the
+// load.
+TEST(DryShell, RollUpByAnEdgeMoment) {
+  const auto table = test::reference("sze2004_cantilever.csv");
+  if (table.empty()) GTEST_SKIP() << "the reference table sze2004_cantilever.csv is not there";
+  CaseRun run("roll_up.toml");
+  int compared = 0;
+  double worst = 0;
+  for (const auto& row : table) {
+    if (!row[0].starts_with("cantilever_end_moment")) continue;
+    run.until(std::stod(row[1]));
+    worst = std::max({worst, std::abs(-run.probe("x_mm") - std::stod(row[3])),
+                      std::abs(run.probe("z_mm") - std::stod(row[5]))});
+    ++compared;
+  }
+  std::printf("roll-up: off by at most %.4f of 12 over %d loads\n", worst, compared);
+  EXPECT_GE(compared, 20);
+  EXPECT_LT(worst, 0.005 * 12);
+}
+
 TEST(DryShell, SphereUnderPressure) {
   const auto table = test::reference("sphere_inflation_neo_hookean.csv");
   if (table.empty()) GTEST_SKIP() << "the reference table sphere_inflation_neo_hookean.csv is not there";
