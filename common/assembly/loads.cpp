@@ -90,7 +90,8 @@ class Loads {
     if (edges.empty()) e_.fail("moment: the set holds no border edge of the shell");
     std::map<long, std::pair<double, std::vector<Edge>>> by_moment;
     for (const Edge& e : edges) {
-      const double part = full.normalized().dot((x[e[1]] - x[e[0]]).normalized());
+      // The term's moment turns the outer side towards the normal: left-handed about the edge.
+      const double part = -full.normalized().dot((x[e[1]] - x[e[0]]).normalized());
       auto& [moment, list] = by_moment[std::lround(part * 1e9)];
       moment = full.norm() * part / (e_.text("share") == "node" ? 1 : length);
       list.push_back(ascending(e));
