@@ -101,7 +101,9 @@ class Shell {
   };
   double element_forces(const Points& x, int offset, int element, std::array<Vec3, 3>& f) const;
   double hinge_forces(const Points& x, int offset, int hinge, std::array<Vec3, 4>& f) const;
-  double hinge_forces(const std::array<Vec3, 4>& at, int hinge, std::array<Vec3, 4>& f) const;
+  /// Never inlined: the compiler would fuse its products differently in the loops of one and of many threads.
+  [[gnu::noinline]] double hinge_forces(const std::array<Vec3, 4>& at, int hinge,
+                                        std::array<Vec3, 4>& f) const;
   Eigen::MatrixXd hinge_tangent(const Points& x, int offset, int hinge) const;
   void build_elements();
   void build_hinges(const Bending& bending);

@@ -303,10 +303,10 @@ TEST(KirchhoffShell, WrongInputIsNamed) {
             }).find("edge 0-1"),
             std::string::npos);
   EXPECT_NE(message([&] { build(x, {{0, 1, 2}, {1, 0, 3}}); }).find("node 4"), std::string::npos);
-  EXPECT_NE(
-      message([&] {
-        build({x[0], x[1], x[2], x[3]}, {{0, 1, 2}, {1, 0, 3}}, {{{0, 1}, {EdgeSupport::clamped, Vec3::Zero(), 0}}});
-      }).find("edge 0-1"),
-      std::string::npos);
+  EXPECT_NE(message([&] {
+              build({x[0], x[1], x[2], x[3]}, {{0, 1, 2}, {1, 0, 3}},
+                    {{{0, 1}, {EdgeSupport::clamped, Vec3::Zero(), 0}}});
+            }).find("edge 0-1"),
+            std::string::npos);
   EXPECT_NE(message([&] { build({x[0], x[1], 2 * x[1]}, {{0, 1, 2}}); }).find("no area"), std::string::npos);
 }
