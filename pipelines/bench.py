@@ -5,8 +5,9 @@
 Each program build/bin/bench_* prints one JSON object a line: {name, value, unit, reference, ratio, ranks}. Programs
 whose name ends in _ranks are run with 1 and with 2 ranks; bench_structure counts its own threads as ranks. Last comes the
 closed valve beside CalculiX (tests/bench/structure_calculix.py), which skips CalculiX's half where it is not installed.
-The file says by which command, at which commit and on which machine it was made, and how busy that was; it is rewritten
-as a whole after every program, so that a run that is stopped leaves what it has measured.
+bench.json is the list of these objects; run.json beside it says by which command, at which commit and on which machine it
+was made, and how busy that was. Both are rewritten as a whole after every program, so that a run that is stopped leaves
+what it has measured.
 """
 
 import json
@@ -45,15 +46,16 @@ def main():
     programs = [p for p in sorted((ROOT / "build" / "bin").glob("bench_*")) if wanted(p.name)]
     if not programs and not wanted("calculix"):
         sys.exit(f"error: no program build/bin/bench_* holds {' or '.join(words)} in its name; 'make build' makes them")
-    found = provenance() | {"programs": {}, "entries": []}
+    entries, made = [], provenance() | {"programs": {}}
     start = time.monotonic()
     for program in programs:
         for ranks in (1, 2) if program.name.endswith("_ranks") else (1,):
             print(f"{program.name}, {ranks} ranks ({time.monotonic() - start:.0f} s since the start)", flush=True)
             began = time.monotonic()
-            found["entries"] += run(program, ranks)
-            found["programs"][f"{program.name}, {ranks} ranks"] = {"wall_s": round(time.monotonic() - began, 1)}
-            replace(OUT, json.dumps(found, indent=2) + "\n")
+            entries += run(program, ranks)
+            made["programs"][f"{program.name}, {ranks} ranks"] = {"wall_s": round(time.monotonic() - began, 1)}
+            replace(OUT, json.dumps(entries, indent=2) + "\n")
+            replace(OUT.with_name("run.json"), json.dumps(made, indent=2) + "\n")
     if programs:
         print(f"written: {OUT.relative_to(ROOT)} after {time.monotonic() - start:.0f} s", flush=True)
     if wanted("calculix"):
