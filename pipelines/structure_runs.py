@@ -85,6 +85,7 @@ def run(scene, folder, timeout_s=900, threads=1):
         code, text = done.returncode, done.stdout
     except subprocess.TimeoutExpired as expired:
         code, text = None, (expired.stdout or b"").decode()
+    text = text.replace(f"{ROOT}/", "")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     result = {"exit": code, "wall_s": time.monotonic() - start,
               "processor_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
