@@ -63,12 +63,18 @@ Leaflets read_leaflets(const state::State& file, const std::string& name, double
   l.mesh = bodies::read_shell(file, name, factor);
   const std::vector<bool> attached = bodies::read_attached(file, name);
   l.attached.assign(attached.begin(), attached.end());
-  const std::vector<std::int64_t>& of_cell = file.cell_data(name, "leaflet").integers(name + "/leaflet");
+  complete(l, file.cell_data(name, "leaflet").integers(name + "/leaflet"), file.source);
+  return l;
+}
+
+}  // namespace
+
+void complete(Leaflets& l, const std::vector<std::int64_t>& of_cell, const std::string& source) {
   l.leaflet.assign(l.points.size(), -1);
   for (std::size_t t = 0; t < l.mesh.triangles.size(); ++t)
     for (int a : l.mesh.triangles[t]) l.leaflet[a] = static_cast<int>(of_cell[t]);
   if (std::count(l.attached.begin(), l.attached.end(), 1) == 0)
-    throw InputError("{}: no node of '{}' is attached; the leaflets would be washed away", file.source, name);
+    throw InputError("{}: no node of '{}' is attached; the leaflets would be washed away", source, l.name);
   const std::vector<Edge> boundary = boundary_edges(l.mesh.triangles);
   for (const Edge& e : boundary)
     if (l.attached[e[0]] && l.attached[e[1]]) l.attachment.push_back(e);
@@ -76,15 +82,12 @@ Leaflets read_leaflets(const state::State& file, const std::string& name, double
   for (int leaf = 0; leaf < 3; ++leaf)
     if (l.tip[leaf] < 0)
       throw InputError("{}: leaflet {} of '{}' has no free edge; expected three leaflets numbered 0, 1, 2",
-                       file.source, leaf, name);
+                       source, leaf, l.name);
   double length = 0;
   for (const Triangle& t : l.mesh.triangles)
     for (int e = 0; e < 3; ++e) length += (l.mesh.reference[t[e]] - l.mesh.reference[t[(e + 1) % 3]]).norm();
   l.mean_edge_mm = length / (3.0 * static_cast<double>(l.mesh.triangles.size()));
-  return l;
 }
-
-}  // namespace
 
 double Inputs::wall_distance(const Vec3& x) const {
   // The level set is closed by the cuts: read it a little inside them.
@@ -185,6 +188,10 @@ std::vector<int> mark_solids(const Inputs& in, const Masks& masks, fluid::Solids
   if (in.native) {
     const int native = solids.add_body("native leaflets");
     solids.mark_triangles(native, in.native->points, in.native->triangles, masks.shell * h);
+  }
+  if (in.mount) {
+    const int mount = solids.add_body("mount");
+    solids.mark_triangles(mount, in.mount->points, in.mount->triangles, masks.shell * h);
   }
   return device;
 }

@@ -41,6 +41,7 @@ struct Inputs {
   std::optional<Leaflets> leaflets;    ///< nothing: a scene without a valve
   std::optional<HeldFrame> frame;
   std::optional<HeldShell> skirt, native;
+  std::optional<HeldShell> mount;   ///< of a valve in a test section
   double friction_capacity_uN = 0;  ///< of the anchored device
 
   /// Signed distance to the wall, with the cuts taken as open.
@@ -48,6 +49,10 @@ struct Inputs {
 };
 
 Inputs read_inputs(const std::filesystem::path& parent, const Parameters& p);
+
+/// From points, mesh and attached: the leaflet of each node, the attached edge, tips, mean edge. leaflet: of
+/// each triangle. InputError with `source`.
+void complete(Leaflets& l, const std::vector<std::int64_t>& leaflet, const std::string& source);
 
 /// The box that hugs lumen and leaflets between the cuts: at least two cells of margin across (the kernels
 /// need them), ends at the cuts.

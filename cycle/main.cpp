@@ -1,5 +1,6 @@
 // valsalva-cycle: the valve beats. Blood on a staggered grid, the leaflets as immersed shells, the left heart
 // and the arteries as 0D models at the two ends. Parent: deploy, or mesher where the scene has no device.
+// A valve in a [test_section] (test_section.hpp) needs no parent.
 // A scene of [[body]] entries without [fluid] (dry.hpp), or of fluid in a box (flow_scene.hpp), is advanced
 // alone, without a parent.
 //
@@ -22,6 +23,7 @@
 #include "scene/scene.hpp"
 #include "state/checkpoint.hpp"
 #include "structure/threads.hpp"
+#include "test_section.hpp"
 
 namespace {
 
@@ -54,10 +56,12 @@ void say_scene(const Inputs& in, const Parameters& p, const Simulation& simulati
 
 void run(StageContext& context) {
   if (is_flow_scene(context.scene)) return run_flow_scene(context);
-  if (is_dry(context.scene)) return run_dry(context);
+  if (!has_test_section(context.scene) && is_dry(context.scene)) return run_dry(context);
   omp_set_num_threads(1);  // the ranks share the work; results do not depend on it
   const Parameters p = read_parameters(context.scene);
-  const Inputs in = read_inputs(context.parent_state(p.device ? "deploy" : "mesher"), p);
+  const Inputs in = has_test_section(context.scene)
+                        ? test_section_inputs(context.scene, p)
+                        : read_inputs(context.parent_state(p.device ? "deploy" : "mesher"), p);
   Simulation simulation(context.comm, in, p);
   say_scene(in, p, simulation);
   if (const auto before = state::resume(context)) {
@@ -90,7 +94,7 @@ void run(StageContext& context) {
 
 Estimate estimate(const Case& scene, int ranks) {
   if (is_flow_scene(scene)) return estimate_flow_scene(scene, ranks);
-  if (is_dry(scene)) return estimate_dry(scene);
+  if (!has_test_section(scene) && is_dry(scene)) return estimate_dry(scene);
   const Parameters p = read_parameters(scene);
   // docs/cycle.md: mean step of a beat about 3e-5 h^1.4, one core 0.06 microseconds a cell and step, and
   // 4.6 ms for leaflets at h = 1 mm (their nodes are as 1 / h^2).
@@ -105,7 +109,7 @@ Estimate estimate(const Case& scene, int ranks) {
 
 void check(const Case& scene) {
   if (is_flow_scene(scene)) return check_flow_scene(scene);
-  if (is_dry(scene)) return check_dry(scene);
+  if (!has_test_section(scene) && is_dry(scene)) return check_dry(scene);
   const Parameters p = read_parameters(scene);
   if (!scene.has("fluid"))
     throw InputError(
@@ -114,6 +118,7 @@ void check(const Case& scene) {
         scene.file().string());
   if (p.end_s <= 0)
     throw InputError("{}: nothing to simulate: cycle.duration_s is {} s", scene.file().string(), p.end_s);
+  if (has_test_section(scene)) test_section_inputs(scene, p);
 }
 
 }  // namespace
@@ -127,7 +132,7 @@ int main(int argc, char** argv) {
        "mpirun -np 2 valsalva-cycle CASE.toml --fidelity standard",
        valsalva::declare_all,
        {"cycle", "fluid", "circulation", "device", "native", "body", "nodes", "support", "load", "tie",
-        "contact_pair", "contact", "dynamics", "probe", "boundary", "obstacle", "flow_probe"},
+        "contact_pair", "contact", "dynamics", "probe", "boundary", "obstacle", "flow_probe", "test_section"},
        run,
        estimate,
        check});

@@ -4,6 +4,7 @@
 
 #include "core/errors.hpp"
 #include "core/units.hpp"
+#include "test_section.hpp"
 
 namespace valsalva::cycle {
 
@@ -50,12 +51,14 @@ Parameters read_parameters(const Case& scene) {
     p.coupling.limits.largest_s = std::min(p.coupling.limits.largest_s, viscous_limit);
   }
   p.coupling.limits.cfl = scene.real("cycle.max_cfl");
+  p.coupling.largest_stretch = scene.real("cycle.largest_stretch");
   p.coupling.probe_interval = static_cast<int>(scene.integer("cycle.probe_interval"));
   p.coupling.probe_iterations = static_cast<int>(scene.integer("cycle.probe_iterations"));
   p.spacing.repulsion = {scene.real("cycle.repulsion_kPa") * units::pa_per_kPa,
                          scene.real("cycle.repulsion_cells") * p.h};
   p.spacing.standoff_mm = scene.real("cycle.standoff_cells") * p.h;
-  p.tissue = tissue_of(scene, p.device ? "device" : "native");
+  p.tissue = has_test_section(scene) ? tissue_in_test_section(scene)
+                                     : tissue_of(scene, p.device ? "device" : "native");
   p.masks = {scene.real("cycle.strut_mask_cells"), scene.real("cycle.shell_mask_cells"),
              scene.real("cycle.edge_mask_cells")};
   p.circulation = read_circulation(scene);

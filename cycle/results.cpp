@@ -177,7 +177,7 @@ state::State state_of(const StageContext& context, const Inputs& in, const Simul
   if (in.leaflets)
     out.meshes[in.leaflets->name] =
         leaflets_now(*in.leaflets, in.parent.mesh(in.leaflets->name), *simulation.shell());
-  for (const char* held : {"lumen", "frame", "skirt", "native_leaflets"})
+  for (const char* held : {"lumen", "frame", "skirt", "native_leaflets", "mount"})
     if (in.parent.has_mesh(held) && !out.has_mesh(held)) out.meshes[held] = in.parent.mesh(held);
   out.images["fluid"] = simulation.flow().image();
   return out;

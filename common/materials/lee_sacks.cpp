@@ -7,6 +7,12 @@
 
 namespace valsalva::materials {
 
+HgoParameters as_hgo(const LeeSacksParameters& p) {
+  require(p.w == 1, "lee-sacks", "w", p.w, "1: only the isotropic law is one of evenly dispersed fibres");
+  constexpr double almost_linear = 1e-3;
+  return {p.c0_Pa / (2 * almost_linear), almost_linear, 9 * p.c1_Pa * p.c2, 9 * p.c2, 1.0 / 3.0};
+}
+
 LeeSacks::LeeSacks(const LeeSacksParameters& parameters) : p_(parameters) {
   require_positive("lee-sacks", "c0 (Pa)", p_.c0_Pa);
   require_not_negative("lee-sacks", "c1 (Pa)", p_.c1_Pa);

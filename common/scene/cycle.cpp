@@ -17,6 +17,8 @@ void declare_cycle(Schema& schema) {
   schema.real("cycle.step_safety", 0.85, {0.05, 0.95}, "Time step over the computed stability limit");
   schema.real("cycle.max_step_s", 1e-4, {1e-7, 1e-2}, "Largest time step");
   schema.real("cycle.max_cfl", 0.35, {0.01, 1}, "Largest local CFL number");
+  schema.real("cycle.largest_stretch", 1.6, {1.05, 5},
+              "Alarm: an edge of a leaflet longer than this times its length at rest");
   schema.integer("cycle.probe_interval", 8, {1, 1000}, "Steps between estimates of the stability limit");
   schema.integer("cycle.probe_iterations", 2, {1, 100}, "Power iterations in each estimate");
   schema.real("cycle.strut_mask_cells", 0.5, {0, 2},

@@ -33,5 +33,6 @@ void declare_probe(Schema& schema);
 void declare_boundary(Schema& schema);
 void declare_obstacle(Schema& schema);
 void declare_flow_probe(Schema& schema);
+void declare_test_section(Schema& schema);
 
 }  // namespace valsalva
