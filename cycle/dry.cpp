@@ -21,6 +21,13 @@ namespace {
 
 using assembly::Scene;
 
+void refuse_what_needs_fluid(const Case& scene) {
+  for (const Case& body : scene.entries("body"))
+    if (!body.texts("body.start_displacement").empty())
+      throw InputError("{}: [[body]] '{}': start_displacement is for scenes with fluid.box_mm",
+                       scene.file().string(), body.text("body.name"));
+}
+
 /// Below this many nodes threads cost more than they bring.
 constexpr std::size_t small_scene = 5000;
 
@@ -218,9 +225,10 @@ class DryRun {
 bool is_dry(const Case& scene) {
   if (scene.has("fluid") && scene.has("body"))
     throw InputError(
-        "{}: the scene has [fluid] and [[body]]; expected one of them: bodies from the case file move "
-        "without fluid",
+        "{}: the scene has [fluid] and [[body]]; expected fluid.box_mm for bodies in a box of fluid, or no "
+        "[fluid]",
         scene.file().string());
+  if (scene.has("body")) refuse_what_needs_fluid(scene);
   return scene.has("body");
 }
 

@@ -8,6 +8,7 @@
 #include "core/log.hpp"
 #include "core/progress.hpp"
 #include "core/provenance.hpp"
+#include "dry_state.hpp"
 #include "flow_scene/scene.hpp"
 #include "state/checkpoint.hpp"
 
@@ -21,6 +22,7 @@ state::State state_of(const StageContext& context, const FlowScene& scene) {
   state::State out = state::begin(context, scene.time_s(), scene.steps());
   out.restart = scene.save();
   out.images["fluid"] = scene.image();
+  if (scene.bodies()) add_bodies(out, scene.bodies()->scene());
   out.final = scene.finished();
   return out;
 }
@@ -45,6 +47,33 @@ void record_files(StageContext& context) {
   };
   for (const Case& entry : context.scene.entries("obstacle")) record(entry, "obstacle.file");
   for (const Case& entry : context.scene.entries("boundary")) record(entry, "boundary.factor_file");
+  for (const Case& entry : context.scene.entries("opening")) record(entry, "opening.factor_file");
+  for (const Case& entry : context.scene.entries("body"))
+    if (entry.text("body.shape") == "file") record(entry, "body.file");
+  for (const Case& entry : context.scene.entries("contact_pair")) record(entry, "contact_pair.file");
+}
+
+void say_bodies(const flow_scene::Bodies& bodies) {
+  for (const assembly::BuiltBody& body : bodies.scene().bodies)
+    log::info("body {}: {} nodes, {} triangles, {} beams, {} solid elements", body.name, body.at.count,
+              body.mesh.triangles.size(), body.mesh.lines.size(), body.mesh.solids.size());
+  const auto figures = bodies.metrics();
+  log::info("coupling at {} points", figures.at("coupling_points"));
+  if (const double rate = figures.at("coupling_tie_rate_per_s"); rate > 0)
+    log::info("ties to masses beyond the fluid's: {:.3g} 1/s; motion slower than {:.3g} Hz is right to 1 %",
+              rate, 0.1 * rate / (2 * M_PI));
+}
+
+/// Of one core: forces, spreading and interpolation, and in one step of eight the search for its limit.
+double body_seconds_a_step(const flow_scene::Bodies& bodies) {
+  constexpr double triangle_s = 0.5e-6, solid_node_s = 1e-6, point_s = 0.6e-6, searches = 1.8;
+  double evaluation_s = 0;
+  for (const assembly::BuiltBody& body : bodies.scene().bodies) {
+    evaluation_s += triangle_s * static_cast<double>(body.mesh.triangles.size() + body.mesh.lines.size());
+    for (const assembly::SolidCell& cell : body.mesh.solids)
+      evaluation_s += solid_node_s * static_cast<double>(cell.nodes.size());
+  }
+  return searches * (evaluation_s + point_s * bodies.metrics().at("coupling_points"));
 }
 
 }  // namespace
@@ -59,6 +88,7 @@ void run_flow_scene(StageContext& context) {
   const fluid::Grid& grid = scene.flow().grid();
   log::info("fluid: {} x {} x {} cells of {} mm", grid.cells[scene.frame().solver_axis(0)],
             grid.cells[scene.frame().solver_axis(1)], grid.cells[scene.frame().solver_axis(2)], grid.h);
+  if (scene.bodies()) say_bodies(*scene.bodies());
   if (scene.given_step_s() > scene.stable_s())
     log::warn("fluid.step_s is {} s; fluid.cfl and the viscosity allow {:.3g} s: the run may become unstable",
               scene.given_step_s(), scene.stable_s());
@@ -101,9 +131,6 @@ void run_flow_scene(StageContext& context) {
 }
 
 void check_flow_scene(const Case& scene) {
-  if (scene.has("body"))
-    throw InputError("{}: the scene has fluid.box_mm and [[body]]; rigid bodies in the box are [[obstacle]]",
-                     scene.file().string());
   FlowScene built(scene, MPI_COMM_SELF);
   built.add_row();
 }
@@ -114,12 +141,21 @@ Estimate estimate_flow_scene(const Case& scene, int ranks) {
   built.step();
   const double cells = static_cast<double>(built.flow().grid().all_cells());
   const bool rk3 = scene.text("fluid.time_scheme") == "rk3";
-  const double step = built.given_step_s() > 0 ? built.given_step_s() : built.stable_s();
+  double step = built.given_step_s() > 0 ? built.given_step_s() : built.stable_s();
+  double seconds_a_step = cells * 0.06e-6 * (rk3 ? 3 : 1) / (ranks > 1 ? 1.7 : 1.0);
+  if (built.bodies()) {
+    const auto figures = built.bodies()->metrics();
+    if (const double critical = figures.at("coupling_critical_step_s"); critical > 0)
+      step = std::min(step, scene.real("coupling.step_safety") * critical);
+    seconds_a_step += body_seconds_a_step(*built.bodies());
+  }
   const double steps = std::max(built.end_s() / step, double(scene.integer("fluid.history_rows")));
   return {
-      steps * cells * 0.06e-6 * (rk3 ? 3 : 1) / (ranks > 1 ? 1.7 : 1.0), 100 + 2e-4 * cells,
-      "second order in the open, first order at staircase walls (docs/verification/fluid.md); the step is "
-      "that of the start, and shrinks where the flow gets faster"};
+      steps * seconds_a_step, 100 + 2e-4 * cells,
+      "second order in the open, first order at staircase walls (docs/verification/fluid.md) and at bodies "
+      "(docs/verification/coupling.md); the step is that of the start, and shrinks where the flow gets "
+      "faster "
+      "or a body stiffer"};
 }
 
 }  // namespace valsalva::cycle

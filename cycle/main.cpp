@@ -125,15 +125,15 @@ void check(const Case& scene) {
 
 int main(int argc, char** argv) {
   valsalva::structure::wait_passively(argv);
-  return valsalva::stage_main(
-      argc, argv,
-      {"cycle",
-       "The valve beats: blood, leaflets, heart and arteries",
-       "mpirun -np 2 valsalva-cycle CASE.toml --fidelity standard",
-       valsalva::declare_all,
-       {"cycle", "fluid", "circulation", "device", "native", "body", "nodes", "support", "load", "tie",
-        "contact_pair", "contact", "dynamics", "probe", "boundary", "obstacle", "flow_probe", "test_section"},
-       run,
-       estimate,
-       check});
+  return valsalva::stage_main(argc, argv,
+                              {"cycle",
+                               "The valve beats: blood, leaflets, heart and arteries",
+                               "mpirun -np 2 valsalva-cycle CASE.toml --fidelity standard",
+                               valsalva::declare_all,
+                               {"cycle", "fluid", "circulation", "device", "native", "body", "nodes",
+                                "support", "load", "tie", "contact_pair", "contact", "dynamics", "probe",
+                                "coupling", "boundary", "obstacle", "flow_probe", "test_section"},
+                               run,
+                               estimate,
+                               check});
 }

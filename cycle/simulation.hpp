@@ -1,11 +1,10 @@
 // The running cycle: fluid, leaflets, circulation and recorder, advanced step by step, with the rescue from
-// alarms: every 200 steps a copy of everything is kept in memory; after an alarm (a node or the fluid too
-// fast, a leaflet stretched too far, a value that is not finite) the run returns to it and goes on with
-// smaller steps; after too many returns it fails.
+// alarms (coupling/rescue.hpp).
 #pragma once
 
 #include <memory>
 
+#include "coupling/rescue.hpp"
 #include "inputs.hpp"
 #include "recorder.hpp"
 #include "terminals.hpp"
@@ -27,22 +26,16 @@ class Simulation {
   const Recorder& recorder() const { return *recorder_; }
   const Terminals& terminals() const { return *terminals_; }
   const coupling::ImmersedStep& last_step() const { return last_; }
-  long returns() const { return returns_; }
+  long returns() const { return rescue_.returns(); }
 
   /// Restart entries, complete on rank 0 (collective); load continues bitwise at equal ranks.
   std::map<std::string, state::Array> save() const;
   void load(const state::State& state);
 
  private:
-  struct Memory {
-    std::map<std::string, state::Array> arrays;  // complete on rank 0
-    std::vector<double> terminals;
-    Recorder::Mark mark;
-    double time_s = 0;
-    long steps = 0;
-  };
-  void remember();
-  void go_back(const std::string& why);
+  /// All of it, with the recorder's mark instead of what it has recorded, which only grows.
+  coupling::Rescue::Arrays copy() const;
+  void return_to(const state::State& copy);
   void advance();
 
   MPI_Comm comm_;
@@ -52,10 +45,10 @@ class Simulation {
   std::unique_ptr<coupling::ImmersedFlow> system_;
   std::unique_ptr<Terminals> terminals_;
   std::unique_ptr<Recorder> recorder_;
-  Memory memory_;
+  coupling::Rescue rescue_;
   coupling::ImmersedStep last_;
   double time_s_ = 0;
-  long steps_ = 0, returns_ = 0, recent_returns_ = 0;
+  long steps_ = 0;
 };
 
 }  // namespace valsalva::cycle

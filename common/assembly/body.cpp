@@ -108,7 +108,8 @@ class Builder {
       refuse();
     }
     const bool solid = kind == Kind::solid;
-    if (shape == "line" || shape == "arc" || (shape == "plate" && solid) || (shape == "box" && !solid))
+    if (shape == "line" || shape == "arc" || (shape == "plate" && solid) ||
+        (!solid && (shape == "box" || shape == "ball")))
       refuse();
     const Map map = map_of(frame, shape, solid);
     if (!solid) {
@@ -131,7 +132,9 @@ class Builder {
 
   Map plain_map(const Frame& frame, const std::string& shape, bool solid) const {
     if (shape == "corners") return corner_map(corners(solid ? 8 : 4));
+    if (shape == "ball") return ball_map(frame, positive_real("radius_mm"));
     const double wall = solid && shape != "box" ? positive_real("wall_mm") : 0;
+    if (shape == "disc") return disc_map(frame, positive_real("radius_mm"), wall);
     if (shape == "leaflet") return leaflet_map(frame, valve(wall), part());
     if (shape == "crown") return crown_map(frame, valve(wall), part());
     if (shape == "cylinder")

@@ -122,6 +122,26 @@ Map annulus_map(const Frame& frame, double radius, std::array<double, 2> angle_d
   };
 }
 
+Map disc_map(const Frame& frame, double radius, double wall) {
+  return [=](const Vec3& s) {
+    const double a = 2 * s.x() - 1, b = 2 * s.y() - 1;
+    return frame.at(
+        Vec3(radius * a * std::sqrt(1 - 0.5 * b * b), radius * b * std::sqrt(1 - 0.5 * a * a), s.z() * wall));
+  };
+}
+
+Map ball_map(const Frame& frame, double radius) {
+  return [=](const Vec3& s) {
+    const Vec3 at = 2 * s - Vec3::Ones(), square = at.cwiseProduct(at);
+    Vec3 out;
+    for (int d = 0; d < 3; ++d) {
+      const double b = square[(d + 1) % 3], c = square[(d + 2) % 3];
+      out[d] = radius * at[d] * std::sqrt(1 - 0.5 * b - 0.5 * c + b * c / 3);
+    }
+    return frame.at(out);
+  };
+}
+
 Map corner_map(const Points& corners) {
   return [=](const Vec3& s) {
     Vec3 x = Vec3::Zero();

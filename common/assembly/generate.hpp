@@ -6,6 +6,8 @@
 //   cylinder  radius (cos a e1 + sin a e2) + z e3         grid: azimuth, height
 //   sphere    radius (sin p (cos a e1 + sin a e2) + cos p e3)   grid: azimuth, polar angle; pole nodes merge
 //   annulus   r (cos a e1 + sin a e2), r from the radius by its width   grid: azimuth, outwards
+//   disc      radius (a sqrt(1 - b^2/2) e1 + b sqrt(1 - a^2/2) e2), a and b from -1 to 1: a square made round
+//   ball      likewise a cube, a sqrt(1 - b^2/2 - c^2/2 + b^2 c^2/3) and so on   grid: along e1, e2, e3
 //   corners   bilinear between 4 corners, trilinear between 8
 //   line, arc e1; radius (cos a e1 + sin a e2)
 // Solids have a third grid direction: the box its third length, cylinder and sphere the wall outwards.
@@ -43,6 +45,9 @@ Map sphere_map(const Frame& frame, double radius, std::array<double, 2> angle_de
 /// Normal (azimuth x outwards) and wall along -e3.
 Map annulus_map(const Frame& frame, double radius, std::array<double, 2> angle_deg, double width,
                 double wall);
+/// Normal along e3, wall along it too.
+Map disc_map(const Frame& frame, double radius, double wall);
+Map ball_map(const Frame& frame, double radius);
 /// Corners of [0, 1]^2 counter-clockwise, or those of the bottom and then those of the top.
 Map corner_map(const Points& corners);
 

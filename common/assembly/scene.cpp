@@ -19,11 +19,12 @@ using structure::System;
 
 class Composer {
  public:
-  Composer(const Case& scene, const References& references) : case_(scene), references_(references) {
+  Composer(const Case& scene, const References& references, std::optional<double> end_s)
+      : case_(scene), references_(references) {
     s_.system = std::make_unique<System>();
-    s_.end_s = scene.real("dynamics.end_s");
+    s_.end_s = end_s.value_or(scene.real("dynamics.end_s"));
     const std::string& solver = scene.text("dynamics.solver");
-    static_ = solver == "static" || solver == "quasi_static";
+    static_ = !end_s && (solver == "static" || solver == "quasi_static");
   }
 
   Scene compose() {
@@ -301,8 +302,8 @@ const std::vector<int>& Scene::set(const std::string& name, const std::string& w
                    known.empty() ? "none is defined" : known);
 }
 
-Scene compose(const Case& scene, const References& references) {
-  return Composer(scene, references).compose();
+Scene compose(const Case& scene, const References& references, std::optional<double> end_s) {
+  return Composer(scene, references, end_s).compose();
 }
 
 }  // namespace valsalva::assembly

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,8 @@ struct Scene {
 /// Stress-free shapes of bodies, by name, where they are not those of their meshes.
 using References = std::map<std::string, Points>;
 
-/// InputError that names the file, the entry, the key, what was found and what is expected.
-Scene compose(const Case& scene, const References& references = {});
+/// InputError that names the file, the entry, the key, what was found and what is expected. end_s: end of the
+/// run in a scene with fluid; otherwise [dynamics] says so.
+Scene compose(const Case& scene, const References& references = {}, std::optional<double> end_s = {});
 
 }  // namespace valsalva::assembly

@@ -56,6 +56,10 @@ class ImmersedBody {
   /// much too fast.
   virtual void move(Points& velocity, double dt_s) = 0;
   virtual EdgeStretch edge_stretch(const Points& since) const = 0;
+  /// The share of the motion dt velocity, above 0 and up to 1, in which nothing passes through anything.
+  virtual double allowed_share(const Points& /*velocity*/, double /*dt_s*/) const { return 1; }
+  /// Has something (contact) become much stiffer since update_tangent()?
+  virtual bool stiffened() const { return false; }
 
   /// Beside the nodes' positions: what a bitwise continuation needs, by names below "coupling/body/".
   virtual std::map<std::string, state::Array> save() const { return {}; }

@@ -20,9 +20,9 @@ ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedBody> body
       body_(std::move(body)),
       shell_(dynamic_cast<ImmersedShell*>(body_.get())),
       settings_(settings),
-      transfer_(
-          flow.slab(), settings.kernel,
-          {flow.boundaries().periodic(0), flow.boundaries().periodic(1), flow.boundaries().periodic(2)}),
+      transfer_(flow.slab(), settings.kernel,
+                {flow.boundaries().periodic(0), flow.boundaries().periodic(1), flow.boundaries().periodic(2)},
+                settings.beyond),
       power_(body_ ? body_->unknowns() : 0),
       last_velocity_(body_ ? body_->unknowns() : 0, Vec3::Zero()),
       change_(last_velocity_),
@@ -54,6 +54,17 @@ void ImmersedFlow::interpolate(const fluid::FaceField& velocity, Points& out) {
 void ImmersedFlow::probe() {
   probed_ = steps_;
   probed_x_ = body_->x();
+  iterate(steps_ == 0 ? settings_.first_iterations : settings_.probe_iterations);
+}
+
+double ImmersedFlow::find_critical() {
+  if (!body_) return std::numeric_limits<double>::infinity();
+  locate();
+  iterate(settings_.first_iterations);
+  return power_.critical_step();
+}
+
+void ImmersedFlow::iterate(int iterations) {
   body_->update_tangent();
   const double per_density = 1 / flow_.parameters().density;
   const std::vector<double> own = body_->own_masses();
@@ -65,7 +76,7 @@ void ImmersedFlow::probe() {
     for (Vec3& each : v) each *= per_density;
     for (std::size_t i = 0; i < own.size(); ++i) v.push_back(f[f.size() - own.size() + i] / own[i]);
   };
-  power_.run(stiffness, mobility, steps_ == 0 ? settings_.first_iterations : settings_.probe_iterations);
+  power_.run(stiffness, mobility, iterations);
   if (steps_ > 0) power_.look_along(change_, stiffness, mobility, settings_.look_iterations);
 }
 
@@ -78,7 +89,7 @@ double ImmersedFlow::plan(double at_most) {
           "coupling: an edge of the structure is {:.3g} times as long as in its stress-free shape",
           stretch.largest);
     if (steps_ == 0 || steps_ - probed_ >= settings_.probe_interval ||
-        stretch.change > settings_.probe_strain)
+        stretch.change > settings_.probe_strain || body_->stiffened())
       probe();
   }
   StepLimits limits = settings_.limits;
@@ -90,9 +101,18 @@ double ImmersedFlow::plan(double at_most) {
 }
 
 ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double dt)>& set_ends) {
+  return step(at_most, StepHooks{{}, {}, set_ends});
+}
+
+ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
   ImmersedStep done;
   done.dt_s = plan(at_most);
-  flow_.clear_force();
+  if (hooks.fit) done.dt_s = hooks.fit(done.dt_s);
+  if (hooks.set_force) {
+    hooks.set_force(done.dt_s);
+  } else {
+    flow_.clear_force();
+  }
   if (body_) {
     body_->begin_step(done.dt_s);
     body_->forces(force_);
@@ -100,20 +120,26 @@ ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double 
   }
   const double limit = settings_.limits.cfl * caution_;
   for (;; ++done.repeats) {
-    if (set_ends) set_ends(done.dt_s);
+    if (hooks.set_ends) hooks.set_ends(done.dt_s);
     flow_.predict(done.dt_s);
     done.fluid = flow_.project(done.dt_s);
-    if (done.fluid.cfl <= limit) break;
+    double share = done.fluid.cfl <= limit ? 1 : limit / done.fluid.cfl;
+    if (body_ && share == 1) {
+      interpolate(flow_.velocity(), velocity_);
+      share = body_->allowed_share(velocity_, done.dt_s);
+    }
+    if (share == 1) break;
     flow_.undo();
-    done.dt_s *= std::max(smallest_cut, planned_share * limit / done.fluid.cfl);
+    done.dt_s *= std::max(smallest_cut, planned_share * share);
     if (done.dt_s < settings_.limits.smallest_s)
       throw NumericalFailure(
-          "coupling: the time step fell to {:.3g} s, and still the fluid would move {:.3g} cells in it",
-          done.dt_s, done.fluid.cfl);
+          "coupling: the time step fell to {:.3g} s, and still {} (the fluid moves {:.3g} cells in it)",
+          done.dt_s,
+          done.fluid.cfl <= limit ? "bodies would pass through each other" : "the fluid is too fast",
+          done.fluid.cfl);
   }
   done.critical_s = body_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
   if (body_) {
-    interpolate(flow_.velocity(), velocity_);
     body_->move(velocity_, done.dt_s);
     for (std::size_t a = 0; a < velocity_.size(); ++a) change_[a] = velocity_[a] - last_velocity_[a];
     last_velocity_ = velocity_;

@@ -4,8 +4,8 @@
 //   every probe_interval steps, or when an edge was strained: lambda_max of (1/rho) J S K anew
 //   (stability.hpp) dt from the limits;  0D models of the ends to t + dt;  F = F(x^n);  f = S F;  u^(n+1) by
 //   the projection method;  x^(n+1) = x^n + dt J u^(n+1) a step whose local CFL number, dt max(|u|+|v|+|w|)/h
-//   of u^(n+1), exceeds the limit is undone and repeated with a smaller dt (and AB2 begins anew), so that the
-//   limit holds for every step
+//   of u^(n+1), exceeds the limit, or in which bodies would pass through each other, is undone and repeated
+//   with a smaller dt (and AB2 begins anew), so that the limit holds for every step
 // with S and J at x^n (leaflets that touch: at their standoff, standoff.hpp): symplectic Euler for the
 // structure, so that no energy is put in by the lag.
 #pragma once
@@ -24,6 +24,7 @@ namespace valsalva::coupling {
 
 struct ImmersedFlowSettings {
   Kernel kernel{Basis::ib4, Basis::ib4};
+  Surroundings beyond{};  ///< sides up to which a body may reach (transfer.hpp)
   StepLimits limits;
   int probe_interval = 8;        ///< steps between estimates of lambda_max
   double probe_strain = 0.002;   ///< or sooner, once an edge has changed its length by this share: there the
@@ -32,6 +33,14 @@ struct ImmersedFlowSettings {
   int look_iterations = 3;       ///< along the nodes' last change of velocity
   int first_iterations = 40;     ///< at the start, from a random direction
   double largest_stretch = 1.6;  ///< alarm: an edge longer than this times its reference length
+};
+
+/// What the caller has to do with a step; each may be empty.
+struct StepHooks {
+  std::function<double(double dt)> fit;      ///< shortens the planned step, to meet a point of time
+  std::function<void(double dt)> set_force;  ///< sets flow.force(), to which the body adds; none: zero
+  /// Before every attempt: what is prescribed at the end of the step (pressures, velocities, held nodes).
+  std::function<void(double dt)> set_ends;
 };
 
 struct ImmersedStep {
@@ -50,6 +59,9 @@ class ImmersedFlow {
   /// pressures of the flow's ends to the end of the step. NumericalFailure (on all ranks) by any alarm: the
   /// state is then to be restored.
   ImmersedStep step(double at_most, const std::function<void(double dt)>& set_ends = {});
+  ImmersedStep step(double at_most, const StepHooks& hooks);
+  /// dt_crit as things stand, by the iterations of a start (collective); infinite without a body.
+  double find_critical();
 
   fluid::Flow& flow() { return flow_; }
   ImmersedBody* body() { return body_.get(); }
@@ -69,6 +81,7 @@ class ImmersedFlow {
 
  private:
   void probe();
+  void iterate(int iterations);
   double plan(double at_most);
   void locate();
   void spread(const Points& force, fluid::FaceField& density);

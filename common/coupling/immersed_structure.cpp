@@ -39,7 +39,14 @@ void add_excess_mass(const structure::System& system, const structure::Body& bod
 ImmersedStructure::ImmersedStructure(std::unique_ptr<structure::System> system,
                                      std::vector<std::shared_ptr<structure::ForceTerm>> terms,
                                      const Points& reference, const ImmersedStructureSettings& settings)
-    : system_(std::move(system)),
+    : ImmersedStructure(*system, std::move(terms), reference, settings) {
+  owned_ = std::move(system);
+}
+
+ImmersedStructure::ImmersedStructure(structure::System& system,
+                                     std::vector<std::shared_ptr<structure::ForceTerm>> terms,
+                                     const Points& reference, const ImmersedStructureSettings& settings)
+    : system_(&system),
       terms_(std::move(terms)),
       settings_(settings),
       edges_(edges_of(settings.cells)),
@@ -80,7 +87,43 @@ ImmersedStructure::ImmersedStructure(std::unique_ptr<structure::System> system,
   }
   if (!any_held) held_.clear();
   if (settings_.sampling_mm) sampling_.emplace(settings_.cells, reference, *settings_.sampling_mm);
+  structure::StiffnessBound bound;
+  bound.reset(system_->nodes(), system_->rotational_nodes());
+  for (const auto& term : terms_) {
+    if (term->stiffness_is_abrupt()) {
+      abrupt_.push_back(term);
+    } else {
+      term->add_stiffness_bound(start, bound);
+    }
+  }
+  elastic_stiffness_ = *std::max_element(bound.translation.begin(), bound.translation.end());
   moved();
+}
+
+double ImmersedStructure::abrupt_stiffness() const {
+  structure::StiffnessBound bound;
+  bound.reset(system_->nodes(), system_->rotational_nodes());
+  for (const auto& term : abrupt_) term->add_stiffness_bound(system_->state, bound);
+  return *std::max_element(bound.translation.begin(), bound.translation.end());
+}
+
+bool ImmersedStructure::stiffened() const {
+  constexpr double growth = 1.2, of_elastic = 0.1;
+  return !abrupt_.empty() &&
+         abrupt_stiffness() > growth * probed_stiffness_ + of_elastic * elastic_stiffness_;
+}
+
+double ImmersedStructure::allowed_share(const Points& velocity, double dt_s) const {
+  if (abrupt_.empty()) return 1;
+  Points to = x();
+  for (std::size_t a = 0; a < to.size(); ++a) {
+    Vec3 v = velocity[a];
+    if (!held_.empty()) v += held_[a] * (system_->state.v[a] - v);
+    to[a] += dt_s * v;
+  }
+  double share = 1;
+  for (const auto& term : abrupt_) share = std::min(share, term->allowed_motion(system_->state, to));
+  return share;
 }
 
 void ImmersedStructure::moved() {
@@ -141,6 +184,7 @@ void ImmersedStructure::forces(Points& out) {
 }
 
 void ImmersedStructure::update_tangent() {
+  if (!abrupt_.empty()) probed_stiffness_ = abrupt_stiffness();
   term_forces(system_->state, here_);
 }
 
@@ -247,6 +291,7 @@ std::map<std::string, state::Array> ImmersedStructure::save() const {
   const Configuration& now = system_->state;
   put("time_s", state::Array::scalar(now.time_s));
   put("velocity", state::Array::of(now.v));
+  if (!abrupt_.empty()) put("probed_stiffness", state::Array::scalar(probed_stiffness_));
   if (!twin_of_.empty()) {
     put("twin", state::Array::of(twin_));
     put("twin_velocity", state::Array::of(twin_velocity_));
@@ -275,6 +320,9 @@ void ImmersedStructure::load(const state::State& state) {
   Configuration& now = system_->state;
   now.time_s = state.array(prefix + std::string("time_s")).number("coupling/body/time_s");
   now.v = points("velocity", now.x.size());
+  if (!abrupt_.empty())
+    probed_stiffness_ =
+        state.array(prefix + std::string("probed_stiffness")).number("coupling/body/probed_stiffness");
   if (!twin_of_.empty()) {
     twin_ = points("twin", twin_of_.size());
     twin_velocity_ = points("twin_velocity", twin_of_.size());

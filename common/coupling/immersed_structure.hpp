@@ -16,6 +16,9 @@
 // w: well above the frequencies of the motion, (motion/w)^2 being the slip of the twin; the tie's own limit
 // is 2 / (w sqrt(1 + rho_s/rho_f)), so that some tenth of the elastic frequencies costs nothing.
 //
+// Contact: a step in which something would pass through something is undone by the ImmersedFlow; the limit of
+// the step is looked for anew as soon as the stiffness bound of contact has grown by a fifth.
+//
 // Limits: the fluid's incompressibility and viscosity hold inside the body; lighter bodies than the fluid are
 // refused; the work of the terms is not divided among ranks.
 #pragma once
@@ -51,6 +54,10 @@ class ImmersedStructure : public ImmersedBody {
                     std::vector<std::shared_ptr<structure::ForceTerm>> terms, const Points& reference,
                     const ImmersedStructureSettings& settings);
 
+  /// The same for a system of the caller's, which must outlive this object.
+  ImmersedStructure(structure::System& system, std::vector<std::shared_ptr<structure::ForceTerm>> terms,
+                    const Points& reference, const ImmersedStructureSettings& settings);
+
   const structure::System& system() const { return *system_; }
   structure::System& system() { return *system_; }
 
@@ -66,8 +73,13 @@ class ImmersedStructure : public ImmersedBody {
   void tangent_product(const Points& direction, Points& out) const override;
   void move(Points& velocity, double dt_s) override;
   EdgeStretch edge_stretch(const Points& since) const override;
+  double allowed_share(const Points& velocity, double dt_s) const override;
+  bool stiffened() const override;
   std::map<std::string, state::Array> save() const override;
   void load(const state::State& state) override;
+
+  void set_tie_rate(double per_s) { settings_.tie_rate_per_s = per_s; }
+  bool has_twins() const { return !twin_of_.empty(); }
 
   /// Of the last forces().
   double stored_energy() const { return stored_; }  ///< of the terms and ties, nJ
@@ -84,10 +96,14 @@ class ImmersedStructure : public ImmersedBody {
   void moved();
   Vec3 free_part(int node, const Vec3& v) const;
   double term_forces(const structure::Configuration& at, structure::Forces& out) const;
+  double abrupt_stiffness() const;
 
-  std::unique_ptr<structure::System> system_;
+  std::unique_ptr<structure::System> owned_;
+  structure::System* system_;
   std::vector<std::shared_ptr<structure::ForceTerm>> terms_;
   ImmersedStructureSettings settings_;
+  std::vector<std::shared_ptr<structure::ForceTerm>> abrupt_;  // contact
+  double elastic_stiffness_ = 0, probed_stiffness_ = 0;        // bounds; of contact at update_tangent()
   std::vector<Edge> edges_;
   std::vector<double> rest_length_;
   double shortest_ = 0;

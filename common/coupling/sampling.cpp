@@ -127,7 +127,8 @@ std::vector<Edge> edges_of(std::span<const Cell> cells) {
   return {edges.begin(), edges.end()};
 }
 
-Sampling::Sampling(std::vector<Cell> cells, const Points& reference, double spacing_mm)
+Sampling::Sampling(std::vector<Cell> cells, const Points& reference, double spacing_mm,
+                   const std::vector<std::uint8_t>& left_out)
     : cells_(std::move(cells)), mass_(reference.size(), 0.0), spacing_(spacing_mm) {
   if (!(spacing_mm > 0))
     throw InputError("coupling: points at a spacing of {} mm; expected a positive one", spacing_mm);
@@ -139,7 +140,7 @@ Sampling::Sampling(std::vector<Cell> cells, const Points& reference, double spac
     for (int i = 0; i < cell.count; ++i) mass_[cell.nodes[i]] += measure_.back() / cell.count;
   }
   for (std::size_t a = 0; a < mass_.size(); ++a)
-    if (mass_[a] == 0) alone_.push_back(static_cast<int>(a));
+    if (mass_[a] == 0 && (left_out.empty() || !left_out[a])) alone_.push_back(static_cast<int>(a));
   locate(reference);
 }
 

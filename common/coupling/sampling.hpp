@@ -14,10 +14,11 @@
 // nodes is cheaper.
 //
 // Cells are linear: lines, triangles, tetrahedra and hexahedra; quadratic elements are divided into linear
-// ones over their nodes. A node without cell is a point itself.
+// ones over their nodes. A node without cell is a point itself, or is left out.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
@@ -43,7 +44,10 @@ std::vector<Edge> edges_of(std::span<const Cell> cells);
 class Sampling {
  public:
   /// spacing: largest distance of neighbouring points, mm; about h/2. InputError when it is not positive.
-  Sampling(std::vector<Cell> cells, const Points& reference, double spacing_mm);
+  /// left_out: nodes without cell that do not couple (one entry a node; empty: none). They have no point, and
+  /// come back with the velocity zero.
+  Sampling(std::vector<Cell> cells, const Points& reference, double spacing_mm,
+           const std::vector<std::uint8_t>& left_out = {});
 
   /// Chooses the points anew for these positions of the nodes.
   void locate(const Points& x);

@@ -20,21 +20,28 @@ int wrapped(int i, int n) {
 
 }  // namespace
 
-Transfer::Transfer(const fluid::Slab& slab, Kernel kernel, std::array<bool, 3> periodic)
-    : slab_(slab), kernel_(kernel), periodic_(periodic) {
+Transfer::Transfer(const fluid::Slab& slab, Kernel kernel, std::array<bool, 3> periodic,
+                   const Surroundings& beyond)
+    : slab_(slab), kernel_(kernel), periodic_(periodic), beyond_(beyond) {
   VALSALVA_ASSERT(periodic_[2] == slab.periodic_z);
 }
 
 void Transfer::locate(const Points& x) {
   const fluid::Grid& grid = slab_.grid;
   const double per_mm = 1 / grid.h;
+  constexpr double round_off = 1e-9;
+  Vec3 lowest, highest;
+  for (int d = 0; d < 3; ++d) {
+    lowest[d] = beyond_[d][0] == Beyond::nothing ? margin_cells : -round_off;
+    highest[d] = grid.cells[d] - (beyond_[d][1] == Beyond::nothing ? margin_cells : -round_off);
+  }
   stencils_.resize(x.size());
   for (std::size_t a = 0; a < x.size(); ++a) {
     Vec3 cell = per_mm * (x[a] - grid.origin);
     for (int d = 0; d < 3; ++d) {
       if (periodic_[d] && std::isfinite(cell[d])) {
         cell[d] -= grid.cells[d] * std::floor(cell[d] / grid.cells[d]);
-      } else if (!(cell[d] >= margin_cells && cell[d] <= grid.cells[d] - margin_cells))
+      } else if (!(cell[d] >= lowest[d] && cell[d] <= highest[d]))
         throw NumericalFailure(
             "coupling: node {} is at ({:.4g}, {:.4g}, {:.4g}) mm, less than {} cells from a side of the "
             "fluid's "
@@ -46,6 +53,18 @@ void Transfer::locate(const Points& x) {
   }
 }
 
+Transfer::Image Transfer::image(int i, int d, bool normal) const {
+  const int n = slab_.grid.cells[d];
+  if (periodic_[d]) return {wrapped(i, n), 1};
+  const bool below = normal ? i <= 0 : i < 0, above = i >= n;
+  if (!below && !above) return {i, 1};
+  const Beyond kind = beyond_[d][above ? 1 : 0];
+  if (kind == Beyond::nothing) return {i, 1};
+  if (normal && (i == 0 || i == n)) return {i, 0};
+  const int mirrored = (below ? 0 : 2 * n) - i - (normal ? 0 : 1);
+  return {mirrored, normal == (kind == Beyond::wall) ? 1.0 : -1.0};
+}
+
 // Calls row(face index j, local k, weight across) for every owned row of faces in the stencil.
 template <class Row>
 void Transfer::visit(const Stencil& stencil, int component, Row&& row) const {
@@ -55,24 +74,27 @@ void Transfer::visit(const Stencil& stencil, int component, Row&& row) const {
   const int used_y = support(component == 1 ? kernel_.along : kernel_.across);
   const int used_z = support(component == 2 ? kernel_.along : kernel_.across);
   for (int c = 0; c < used_z; ++c) {
-    const int plane = periodic_[2] ? wrapped(z.start + c, slab_.grid.cells[2]) : z.start + c;
-    const int k = plane - slab_.first;
-    if (k < 0 || k >= planes) continue;
+    const Image plane = image(z.start + c, 2, component == 2);
+    const int k = plane.index - slab_.first;
+    if (plane.sign == 0 || k < 0 || k >= planes) continue;
     for (int b = 0; b < used_y; ++b) {
-      const int j = periodic_[1] ? wrapped(y.start + b, slab_.grid.cells[1]) : y.start + b;
-      row(j, k, z.value[c] * y.value[b]);
+      const Image j = image(y.start + b, 1, component == 1);
+      if (j.sign != 0) row(j.index, k, plane.sign * j.sign * z.value[c] * y.value[b]);
     }
   }
 }
 
+// Does the stencil reach beyond the box along x, or to its sides?
 bool Transfer::wraps(const Weights& x) const {
-  return periodic_[0] && (x.start < 0 || x.start + 4 > slab_.grid.cells[0]);
+  const int n = slab_.grid.cells[0];
+  if (periodic_[0]) return x.start < 0 || x.start + 4 > n;
+  return (beyond_[0][0] != Beyond::nothing && x.start <= 0) ||
+         (beyond_[0][1] != Beyond::nothing && x.start + 4 > n);
 }
 
 void Transfer::spread(const Points& force, fluid::FaceField& density) const {
   VALSALVA_ASSERT(force.size() >= stencils_.size());
   const double per_volume = 1 / (slab_.grid.h * slab_.grid.h * slab_.grid.h);
-  const int nx = slab_.grid.cells[0];
   for (int d = 0; d < 3; ++d) {
     fluid::Field& field = density[d];
     for (std::size_t a = 0; a < stencils_.size(); ++a) {
@@ -81,7 +103,10 @@ void Transfer::spread(const Points& force, fluid::FaceField& density) const {
       const Quad along = per_volume * force[a][d] * Eigen::Map<const Quad>(x.value.data());
       if (wraps(x)) {
         visit(stencils_[a], d, [&](int j, int k, double across) {
-          for (int i = 0; i < 4; ++i) field(wrapped(x.start + i, nx), j, k) += across * along[i];
+          for (int i = 0; i < 4; ++i) {
+            const Image at = image(x.start + i, 0, d == 0);
+            if (at.sign != 0) field(at.index, j, k) += at.sign * across * along[i];
+          }
         });
       } else {
         visit(stencils_[a], d, [&](int j, int k, double across) {
@@ -94,7 +119,6 @@ void Transfer::spread(const Points& force, fluid::FaceField& density) const {
 
 void Transfer::interpolate(const fluid::FaceField& velocity, Points& out) const {
   out.resize(stencils_.size());
-  const int nx = slab_.grid.cells[0];
   for (int d = 0; d < 3; ++d) {
     const fluid::Field& field = velocity[d];
     for (std::size_t a = 0; a < stencils_.size(); ++a) {
@@ -102,7 +126,10 @@ void Transfer::interpolate(const fluid::FaceField& velocity, Points& out) const 
       Quad sum = Quad::Zero();
       if (wraps(x)) {
         visit(stencils_[a], d, [&](int j, int k, double across) {
-          for (int i = 0; i < 4; ++i) sum[i] += across * field(wrapped(x.start + i, nx), j, k);
+          for (int i = 0; i < 4; ++i) {
+            const Image at = image(x.start + i, 0, d == 0);
+            if (at.sign != 0) sum[i] += at.sign * across * field(at.index, j, k);
+          }
         });
       } else {
         visit(stencils_[a], d, [&](int j, int k, double across) {

@@ -7,8 +7,11 @@
 // S and J are adjoint: h^3 sum_faces (S F) u = sum_a F_a . (J u)_a, to round-off. Each rank spreads to the
 // faces it owns and interpolates from them; the partial sums are added over ranks, in rank order.
 //
-// Along a periodic direction a node may be anywhere and acts on the images of the box alike. Elsewhere nodes
-// have to stay two cells away from the sides of the box: NumericalFailure names the one that does not.
+// Along a periodic direction a node may be anywhere and acts on the images of the box alike. Beyond a slip
+// side or a wall at rest the velocity can go on as its image, so that nodes may lie up to the side:
+//   slip   tangential even, normal odd        wall   tangential odd, normal even (it grows with the square)
+// both free of divergence where the velocity is; S stays adjoint to J. Elsewhere nodes have to stay two cells
+// away from the sides of the box: NumericalFailure names the one that does not.
 #pragma once
 
 #include <array>
@@ -20,10 +23,16 @@
 
 namespace valsalva::coupling {
 
+/// How the velocity goes on beyond a side that is not periodic.
+enum class Beyond { nothing, slip, wall };
+/// Of the low and the high side in x, y and z.
+using Surroundings = std::array<std::array<Beyond, 2>, 3>;
+
 class Transfer {
  public:
   /// periodic: in x, y and z, as the sides of the box are.
-  Transfer(const fluid::Slab& slab, Kernel kernel, std::array<bool, 3> periodic = {});
+  Transfer(const fluid::Slab& slab, Kernel kernel, std::array<bool, 3> periodic = {},
+           const Surroundings& beyond = {});
 
   /// Takes the nodes' positions: every spread and interpolation until the next call uses them.
   void locate(const Points& x);
@@ -40,10 +49,17 @@ class Transfer {
   template <class Row>
   void visit(const Stencil& stencil, int component, Row&& row) const;
   bool wraps(const Weights& x) const;
+  struct Image {
+    int index = 0;
+    double sign = 1;  // 0: on a wall, where nothing acts
+  };
+  /// The sample i of faces or centres along d as one of the box; normal: of the component along d.
+  Image image(int i, int d, bool normal) const;
 
   const fluid::Slab& slab_;
   Kernel kernel_;
   std::array<bool, 3> periodic_;
+  Surroundings beyond_;
   std::vector<Stencil> stencils_;
 };
 

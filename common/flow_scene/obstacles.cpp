@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "assembly/entry.hpp"
 #include "assembly/mesh_file.hpp"
@@ -228,7 +229,7 @@ bool Obstacles::move() const {
                      [](const Obstacle& o) { return o.moves() && !o.part; });
 }
 
-void Obstacles::place(fluid::Flow& flow, const Frame& frame, double time_s) {
+void Obstacles::place(fluid::Flow& flow, const Frame& frame, double time_s, const Points& sharp_at) {
   std::vector<Distance> walls;
   for (Obstacle& obstacle : obstacles_) {
     if (obstacle.part) continue;
@@ -241,12 +242,43 @@ void Obstacles::place(fluid::Flow& flow, const Frame& frame, double time_s) {
     }
   }
   if (walls.empty()) return;
+  if (!sharp_at.empty()) sharpen(flow, frame, sharp_at);
   flow.solids().set_lumen([&](const Vec3& x) {
     const Vec3 here = frame.to_case(x);
     double in_solid = -1e300;
     for (const Distance& wall : walls) in_solid = std::max(in_solid, -wall(here));
     return in_solid;
   });
+}
+
+void Obstacles::sharpen(fluid::Flow& flow, const Frame& frame, const Points& at) {
+  constexpr int reach = 3;  // cells
+  const fluid::Grid& grid = flow.grid();
+  using Cell = std::array<int, 3>;
+  const auto cell_of = [&](const Vec3& x) {
+    const Vec3 place = (x - grid.origin) / grid.h;
+    return Cell{static_cast<int>(std::floor(place[0])), static_cast<int>(std::floor(place[1])),
+                static_cast<int>(std::floor(place[2]))};
+  };
+  std::set<Cell> near;
+  for (Obstacle& obstacle : obstacles_) {
+    if (obstacle.part || obstacle.body != fluid::Solids::wall) continue;
+    near.clear();
+    for (const Vec3& x : at) {
+      if (obstacle.distance(x) > (reach + 1) * grid.h) continue;
+      const Cell centre = cell_of(frame.to_solver(x));
+      for (int c = -reach; c <= reach; ++c)
+        for (int b = -reach; b <= reach; ++b)
+          for (int a = -reach; a <= reach; ++a) near.insert({centre[0] + a, centre[1] + b, centre[2] + c});
+    }
+    if (near.empty()) continue;
+    obstacle.sharp = flow.solids().add_body(obstacle.name + " at bodies");
+    const Vec3 extent = grid.h * Vec3::Ones();
+    flow.solids().mark_inside(
+        obstacle.sharp,
+        [&](const Vec3& x) { return near.contains(cell_of(x)) ? obstacle.distance(frame.to_case(x)) : 1.0; },
+        grid.low() - extent, grid.high() + extent);
+  }
 }
 
 void Obstacles::mark(fluid::Flow& flow, const Frame& frame, const Obstacle& obstacle, double time_s) const {
@@ -318,7 +350,8 @@ Obstacles::Load Obstacles::load_on(fluid::Flow& flow, const Frame& frame, const 
     const fluid::WallForce::Sum sum = obstacle.wall->of(flow, place);
     const bool alone = std::count_if(obstacles_.begin(), obstacles_.end(),
                                      [](const Obstacle& o) { return o.body == fluid::Solids::wall; }) == 1;
-    const Vec3 force = alone ? flow.solids().force_on(fluid::Solids::wall) : sum.force;
+    Vec3 force = alone ? flow.solids().force_on(fluid::Solids::wall) : sum.force;
+    if (alone && obstacle.sharp >= 0) force += flow.solids().force_on(obstacle.sharp);
     return {frame.to_case(force), frame.to_case(sum.moment)};
   }
   Load load{frame.to_case(flow.solids().force_on(obstacle.body)),

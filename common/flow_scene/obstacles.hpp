@@ -30,6 +30,7 @@ class Obstacles {
     std::shared_ptr<Expression> turn_deg;
     Vec3 turn_axis = Vec3::UnitZ(), turn_point = Vec3::Zero();
     int body = -1;                           ///< of the flow's solids; 0: in its wall
+    int sharp = -1;                          ///< its faces near deformable bodies, where it is in the wall
     std::shared_ptr<fluid::WallForce> wall;  ///< of an interpolated wall
 
     bool moves() const { return displacement || turn_deg; }
@@ -50,8 +51,9 @@ class Obstacles {
   const Obstacle& find(const std::string& name, const std::string& what) const;
   bool move() const;
 
-  /// Before anything else: the bodies and walls in the flow, as they stand at time_s.
-  void place(fluid::Flow& flow, const Frame& frame, double time_s);
+  /// Before anything else: the bodies and walls in the flow, as they stand at time_s. Faces of interpolated
+  /// walls within three cells of sharp_at (axes of the case) are staircases: docs/decisions/flow-bodies.md.
+  void place(fluid::Flow& flow, const Frame& frame, double time_s, const Points& sharp_at = {});
   /// Interpolated walls get their points for load_on; otherwise nothing to do.
   void prepare_loads(const fluid::Flow& flow, const Frame& frame, const std::string& name);
   /// Moving bodies to where they are at time_s.
@@ -68,6 +70,7 @@ class Obstacles {
                double time_s) const;
 
  private:
+  void sharpen(fluid::Flow& flow, const Frame& frame, const Points& at);
   void mark(fluid::Flow& flow, const Frame& frame, const Obstacle& obstacle, double time_s) const;
 
   std::vector<Obstacle> obstacles_;

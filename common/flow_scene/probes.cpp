@@ -41,7 +41,7 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
 
 }  // namespace
 
-Probes::Probes(const Case& scene, const Sides& sides, const Obstacles& obstacles) {
+Probes::Probes(const Case& scene, const Sides& sides, const Obstacles& obstacles, const Bodies* bodies) {
   for (const Case& entry : scene.entries("flow_probe")) {
     const Entry e(scene, "flow_probe", entry);
     const std::string name = e.text("name"), quantity = e.text("quantity"), what = e.what();
@@ -102,7 +102,16 @@ Probes::Probes(const Case& scene, const Sides& sides, const Obstacles& obstacles
         out.push_back(m.flow.outflow(m.frame.solver_axis(side.axis), side.side) / units::mm3_per_mL);
       });
     } else if (quantity == "force" || quantity == "moment") {
-      const auto& obstacle = obstacles.find(e.text("of"), what);
+      std::vector<std::string> names{e.text("of")}, soft;
+      names.insert(names.end(), e.texts("with").begin(), e.texts("with").end());
+      std::vector<const Obstacles::Obstacle*> hard;
+      for (const std::string& one : names) {
+        if (bodies && bodies->has(one)) {
+          soft.push_back(one);
+        } else {
+          hard.push_back(&obstacles.find(one, what));
+        }
+      }
       const double speed = e.real("reference_speed_mm_per_s"), area = e.real("reference_area_mm2");
       const bool force = quantity == "force";
       if ((speed > 0) != (area > 0))
@@ -110,11 +119,24 @@ Probes::Probes(const Case& scene, const Sides& sides, const Obstacles& obstacles
       if (!force && area > 0) e.fail("coefficients are those of a force");
       auto columns = component.columns(name, force ? "N" : "N_mm");
       if (area > 0) columns = joined(columns, component.columns(name, "coefficient"));
-      add(columns, [=, &obstacle](const Measured& m, std::vector<double>& out) {
-        const Obstacles::Load load = m.obstacles.load_on(m.flow, m.frame, obstacle, point, m.time_s);
+      add(columns, [=](const Measured& m, std::vector<double>& out) {
+        Obstacles::Load load{Vec3::Zero(), Vec3::Zero()};
+        const auto take = [&](const Obstacles::Load& part) {
+          load.force += part.force;
+          load.moment += part.moment;
+        };
+        for (const auto* obstacle : hard)
+          take(m.obstacles.load_on(m.flow, m.frame, *obstacle, point, m.time_s));
+        for (const std::string& body : soft) take(m.bodies->load_on(body, point));
         component.put((force ? load.force : load.moment) / units::uN_per_N, out);
         if (area > 0)
           component.put(load.force / (0.5 * m.flow.parameters().density * speed * speed * area), out);
+      });
+    } else if (quantity == "momentum") {
+      add(component.columns(name, "g_mm_per_s"), [=](const Measured& m, std::vector<double>& out) {
+        Vec3 sum = m.frame.to_case(m.flow.momentum());
+        if (m.bodies) sum += m.bodies->excess_momentum();
+        component.put(sum, out);
       });
     } else if (quantity == "wall_shear_stress") {
       const auto& obstacle = obstacles.find(e.text("of"), what);

@@ -3,6 +3,7 @@
 //   kinetic_energy   int rho u^2 / 2 dV                                      nJ
 //   dissipation      int 2 mu S:S dV, S the symmetric velocity gradient      nJ/s
 //   enstrophy        int |rot u|^2 / 2 dV                                    mm3/s2
+//   momentum         of the box, and of what bodies have beyond the fluid's density    g mm/s
 // over the cells that are not solid; squares of differences across a cell's edges are averaged over its four
 // edges of that direction. Errors: over all faces (pressure: cells) that are not solid, in the norm
 // sqrt(mean |.|^2) or the largest; the means of both pressures are taken off.
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "core/case.hpp"
+#include "flow_scene/bodies.hpp"
 #include "flow_scene/obstacles.hpp"
 #include "flow_scene/sides.hpp"
 
@@ -25,13 +27,14 @@ struct Measured {
   const Frame& frame;
   const Obstacles& obstacles;
   double time_s = 0;
-  double step_s = 0;  ///< the last
+  double step_s = 0;               ///< the last
+  const Bodies* bodies = nullptr;  ///< null: none
 };
 
 class Probes {
  public:
   /// InputError that names the entry.
-  Probes(const Case& scene, const Sides& sides, const Obstacles& obstacles);
+  Probes(const Case& scene, const Sides& sides, const Obstacles& obstacles, const Bodies* bodies);
 
   const std::vector<std::string>& columns() const { return columns_; }
   /// One value a column (collective).

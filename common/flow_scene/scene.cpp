@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/log.hpp"
 #include "core/units.hpp"
 
 namespace valsalva::flow_scene {
@@ -11,6 +12,7 @@ namespace valsalva::flow_scene {
 namespace {
 
 constexpr int cells_of_no_extent = 4;
+constexpr double smallest_step = 1e-9;  // of the run
 
 fluid::Grid grid_of(const Case& scene, const Sides& sides) {
   const std::string file = scene.file().string();
@@ -81,9 +83,31 @@ fluid::FlowParameters parameters_of(const Case& scene) {
   return p;
 }
 
-std::vector<std::string> columns_of(const Probes& probes) {
+/// Bodies may reach up to slip sides and to walls at rest.
+coupling::Surroundings beyond(const Sides& sides) {
+  coupling::Surroundings out{};
+  const fluid::Boundaries boundaries = sides.boundaries();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int side = 0; side < 2; ++side) {
+      const fluid::Side kind = boundaries.side[axis][side];
+      if (kind == fluid::Side::slip) out[axis][side] = coupling::Beyond::slip;
+      if (kind == fluid::Side::wall && !sides.moves(sides.frame().case_axis(axis), side))
+        out[axis][side] = coupling::Beyond::wall;
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> columns_of(const Probes& probes, const Bodies* bodies, const std::string& file) {
   std::vector<std::string> columns{"time_s", "largest_speed_mm_per_s"};
   columns.insert(columns.end(), probes.columns().begin(), probes.columns().end());
+  if (!bodies) return columns;
+  for (const std::string& column : bodies->columns()) {
+    if (std::find(columns.begin(), columns.end(), column) != columns.end())
+      throw InputError("{}: a [[probe]] and a [[flow_probe]] both give the column {}; rename one of them",
+                       file, column);
+    columns.push_back(column);
+  }
   return columns;
 }
 
@@ -119,9 +143,10 @@ FlowScene::FlowScene(const Case& scene, MPI_Comm comm)
     : sides_(scene),
       grid_(grid_of(scene, sides_)),
       obstacles_(scene, grid_.h),
+      bodies_(Bodies::of(scene, obstacles_)),
       flow_(std::make_unique<fluid::Flow>(comm, grid_, sides_.boundaries(), parameters_of(scene))),
-      probes_(scene, sides_, obstacles_),
-      history_(columns_of(probes_)),
+      probes_(scene, sides_, obstacles_, bodies_.get()),
+      history_(columns_of(probes_, bodies_.get(), scene.file().string())),
       force_(scene.texts("fluid.body_force_Pa_per_mm"),
              scene.file().string() + ": fluid.body_force_Pa_per_mm"),
       rk3_(scene.text("fluid.time_scheme") == "rk3"),
@@ -131,7 +156,8 @@ FlowScene::FlowScene(const Case& scene, MPI_Comm comm)
       given_step_s_(scene.real("fluid.step_s")),
       end_s_(scene.real("fluid.end_s")),
       average_from_s_(scene.real("fluid.average_from_s")),
-      rows_(scene.integer("fluid.history_rows")) {
+      rows_(scene.integer("fluid.history_rows")),
+      rescue_(comm) {
   if (average_from_s_ < 0) average_from_s_ = 0.5 * end_s_;
   if (const auto& law = flow_->parameters().extra_viscosity.carreau_yasuda)
     zero_shear_viscosity_ = law->zero_shear;
@@ -142,11 +168,13 @@ void FlowScene::start(const Case& scene) {
   const std::string file = scene.file().string();
   const VectorExpression velocity(scene.texts("fluid.velocity"), file + ": fluid.velocity");
   const Expression pressure(scene.text("fluid.pressure"), file + ": fluid.pressure");
-  obstacles_.place(*flow_, frame(), 0);
+  obstacles_.place(*flow_, frame(), 0, bodies_ ? bodies_->places() : Points{});
   for (const Case& probe : scene.entries("flow_probe")) {
     const std::string& quantity = probe.text("flow_probe.quantity");
-    if (quantity == "force" || quantity == "moment")
-      obstacles_.prepare_loads(*flow_, frame(), probe.text("flow_probe.of"));
+    if (quantity != "force" && quantity != "moment") continue;
+    obstacles_.prepare_loads(*flow_, frame(), probe.text("flow_probe.of"));
+    for (const std::string& name : probe.texts("flow_probe.with"))
+      obstacles_.prepare_loads(*flow_, frame(), name);
   }
   sides_.set(*flow_, 0);
   const auto at_start = [&](int d, const Vec3& x) {
@@ -169,6 +197,10 @@ void FlowScene::start(const Case& scene) {
   }
   speed_ = mpi::max(slab.comm, speed);
   set_force(0);
+  if (bodies_)
+    bodies_->immerse(scene, *flow_, frame(), cfl_,
+                     std::min(stable_s(), 0.5 * end_s_ / static_cast<double>(rows_)), smallest_step * end_s_,
+                     beyond(sides_));
 }
 
 void FlowScene::set_force(double time_s) {
@@ -208,15 +240,17 @@ double FlowScene::next_step_s() const {
   return std::min(stable_s(), step_s_ > 0 ? 1.2 * step_s_ : 1e-3 * end_s_);
 }
 
+void FlowScene::prescribe(double time_s) {
+  if (obstacles_.move()) obstacles_.update(*flow_, frame(), time_s);
+  sides_.set(*flow_, time_s);
+}
+
 void FlowScene::step() {
+  if (bodies_) return step_with_bodies();
   const double row_s = end_s_ * static_cast<double>(row_ + 1) / static_cast<double>(rows_);
   const double remaining = row_s - time_s_, most = next_step_s();
   const double count = std::max(1.0, std::ceil(remaining / most - 1e-9));
   const double dt = remaining / count, start = time_s_;
-  const auto prescribe = [&](double time) {
-    if (obstacles_.move()) obstacles_.update(*flow_, frame(), time);
-    sides_.set(*flow_, time);
-  };
   set_force(start + 0.5 * dt);
   fluid::StepReport report;
   if (rk3_) {
@@ -225,19 +259,60 @@ void FlowScene::step() {
     prescribe(start + dt);
     report = flow_->step(dt);
   }
-  sides_.advance(*flow_, start, dt);
-  speed_ = report.max_speed;
-  step_s_ = dt;
+  finish_step(start, dt, row_s, count == 1, report.max_speed);
+}
+
+void FlowScene::finish_step(double start_s, double dt_s, double row_s, bool meets_row, double max_speed) {
+  sides_.advance(*flow_, start_s, dt_s);
+  speed_ = max_speed;
+  step_s_ = dt_s;
   ++steps_;
-  row_due_ = count == 1;
-  time_s_ = row_due_ ? row_s : start + dt;
+  row_due_ = meets_row;
+  time_s_ = row_due_ ? row_s : start_s + dt_s;
   if (row_due_) ++row_;
+}
+
+// set_force for a field to which the bodies add theirs in every step.
+void FlowScene::add_force_again(double time_s) {
+  if (!constant_force_ || force_.changes() || obstacles_.move()) {
+    forced_ = false;
+    set_force(time_s);
+    constant_force_ = flow_->force();
+  } else {
+    flow_->force() = *constant_force_;
+  }
+}
+
+void FlowScene::step_with_bodies() {
+  rescue_.before_step(steps_, bodies_->system(), [&] { return save_run(); });
+  const double row_s = end_s_ * static_cast<double>(row_ + 1) / static_cast<double>(rows_);
+  const double start = time_s_, remaining = row_s - start;
+  coupling::StepHooks hooks;
+  hooks.fit = [&](double dt) { return remaining / std::max(1.0, std::ceil(remaining / dt - 1e-9)); };
+  hooks.set_force = [&](double dt) { add_force_again(start + 0.5 * dt); };
+  hooks.set_ends = [&](double dt) { prescribe(start + dt); };
+  coupling::ImmersedStep done;
+  try {
+    done = bodies_->step(start, next_step_s(), std::move(hooks));
+  } catch (const NumericalFailure& alarm) {
+    const std::string why = alarm.what();
+    rescue_.go_back(why, bodies_->system(), [&](const state::State& copy) { load_run(copy); });
+    row_due_ = false;
+    log::warn("back to t = {:.6g} s, steps {:.2g} times as large: {}", time_s_, bodies_->system().caution(),
+              why);
+    return;
+  }
+  finish_step(start, done.dt_s, row_s, done.dt_s >= remaining, done.fluid.max_speed);
 }
 
 void FlowScene::add_row() {
   std::vector<double> row{time_s_, speed_};
   const std::vector<double> measured_now = probes_.values(measured());
   row.insert(row.end(), measured_now.begin(), measured_now.end());
+  if (bodies_) {
+    const std::vector<double> of_bodies = bodies_->values();
+    row.insert(row.end(), of_bodies.begin(), of_bodies.end());
+  }
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (!std::isfinite(row[i]))
       throw NumericalFailure("'{}' is not finite at {} s; reduce fluid.cfl or fluid.step_s",
@@ -253,6 +328,10 @@ std::vector<std::pair<std::string, std::string>> FlowScene::profiles() {
 
 std::map<std::string, double> FlowScene::metrics() const {
   std::map<std::string, double> out;
+  if (bodies_) {
+    out = bodies_->metrics();
+    out["coupling_returns"] = static_cast<double>(rescue_.returns());
+  }
   if (history_.rows() == 0) return out;
   const std::vector<double> time = history_.column("time_s");
   const auto first = static_cast<std::size_t>(
@@ -288,17 +367,29 @@ std::map<std::string, double> FlowScene::metrics() const {
 }
 
 std::map<std::string, state::Array> FlowScene::save() const {
-  auto arrays = flow_->save();
+  auto arrays = save_run();
+  if (bodies_) arrays.merge(rescue_.save());
+  return arrays;
+}
+
+void FlowScene::load(const state::State& state) {
+  load_run(state);
+  if (bodies_) rescue_.load(state);
+}
+
+std::map<std::string, state::Array> FlowScene::save_run() const {
+  auto arrays = bodies_ ? bodies_->system().save() : flow_->save();
   if (flow_->slab().rank != 0) return arrays;
   arrays["scene/march"] = state::Array::of(
       std::vector<double>{time_s_, static_cast<double>(steps_), static_cast<double>(row_), step_s_, speed_});
   arrays["scene/history"] = state::Array::of(history_.values());
   arrays["scene/outlets"] = state::Array::of(sides_.save());
   arrays["scene/means"] = state::Array::of(probes_.save());
+  if (bodies_) arrays["scene/bodies"] = state::Array::of(bodies_->save());
   return arrays;
 }
 
-void FlowScene::load(const state::State& state) {
+void FlowScene::load_run(const state::State& state) {
   const auto& march = state.array("scene/march").doubles("scene/march");
   if (march.size() != 5)
     throw InputError("{}: scene/march has {} entries, expected 5", state.source, march.size());
@@ -312,7 +403,12 @@ void FlowScene::load(const state::State& state) {
   probes_.restore(state.array("scene/means").doubles("scene/means"));
   if (obstacles_.move()) obstacles_.update(*flow_, frame(), time_s_);
   sides_.set(*flow_, time_s_);
-  flow_->load(state);
+  if (bodies_) {
+    bodies_->restore(state.array("scene/bodies").doubles("scene/bodies"));
+    bodies_->system().load(state);
+  } else {
+    flow_->load(state);
+  }
 }
 
 state::Image FlowScene::image() const {

@@ -1,17 +1,21 @@
-// A scene of fluid alone (docs/flow-scenes.md): box, sides, obstacles and probes of a case file around a
+// A scene of fluid (docs/flow-scenes.md): box, sides, obstacles, bodies and probes of a case file around a
 // Flow, and its march in time.
 //
 // Steps meet the rows of the history exactly. step_s, or as large as
 //   dt (|u|+|v|+|w|) / h <= cfl       (of fluid, sides and moving obstacles)
 //   dt <= c h^2 / nu                  c = 1/14 for ab2, 0.18 for rk3; none where viscosity is implicit
 // allow, and at most 1.2 times the step before. What is prescribed over time is taken at the end of each step
-// (rk3: of each stage), body forces in its middle.
+// (rk3: of each stage), body forces in its middle. With deformable bodies the structure's limit counts too,
+// and after an alarm the run goes back (coupling/rescue.hpp).
 #pragma once
 
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "core/run_folder.hpp"
+#include "coupling/rescue.hpp"
+#include "flow_scene/bodies.hpp"
 #include "flow_scene/obstacles.hpp"
 #include "flow_scene/probes.hpp"
 #include "flow_scene/sides.hpp"
@@ -38,10 +42,12 @@ class FlowScene {
   fluid::Flow& flow() { return *flow_; }
   const Frame& frame() const { return sides_.frame(); }
   const Obstacles& obstacles() const { return obstacles_; }
+  Bodies* bodies() { return bodies_.get(); }  ///< null: none
+  const Bodies* bodies() const { return bodies_.get(); }
 
   double stable_s() const;                               ///< what cfl and viscosity allow now
   double given_step_s() const { return given_step_s_; }  ///< 0: none
-  /// Collective; NumericalFailure when the velocity is not finite.
+  /// Collective; NumericalFailure when the velocity is not finite (with bodies: and there is no way back).
   void step();
 
   const History& history() const { return history_; }
@@ -58,14 +64,21 @@ class FlowScene {
   state::Image image() const;
 
  private:
-  Measured measured() { return {*flow_, sides_.frame(), obstacles_, time_s_, step_s_}; }
+  Measured measured() { return {*flow_, sides_.frame(), obstacles_, time_s_, step_s_, bodies_.get()}; }
   double next_step_s() const;
   void set_force(double time_s);
+  void add_force_again(double time_s);
+  void prescribe(double time_s);
+  void step_with_bodies();
+  void finish_step(double start_s, double dt_s, double row_s, bool meets_row, double max_speed);
+  std::map<std::string, state::Array> save_run() const;
+  void load_run(const state::State& state);
   void start(const Case& scene);
 
   Sides sides_;
   fluid::Grid grid_;  ///< axes of the solver
   Obstacles obstacles_;
+  std::unique_ptr<Bodies> bodies_;
   std::unique_ptr<fluid::Flow> flow_;
   Probes probes_;
   History history_;
@@ -75,6 +88,8 @@ class FlowScene {
   long rows_, row_ = 0, steps_ = 0;
   double time_s_ = 0, step_s_ = 0, speed_ = 0;
   bool row_due_ = false, forced_ = false;
+  std::optional<fluid::FaceField> constant_force_;  // with bodies: what their forces are added to
+  coupling::Rescue rescue_;
 };
 
 }  // namespace valsalva::flow_scene

@@ -6,7 +6,8 @@ namespace {
 void declare_mesh_keys(Schema& schema) {
   schema.choice(
       "body.shape", "file",
-      {"file", "plate", "box", "corners", "cylinder", "sphere", "annulus", "line", "arc", "leaflet", "crown"},
+      {"file", "plate", "box", "corners", "cylinder", "sphere", "annulus", "disc", "ball", "line", "arc",
+       "leaflet", "crown"},
       "Where the mesh comes from: a file, or generated in the frame origin, direction1, direction2");
   schema.text("body.file", "",
               "Mesh file: .msh (gmsh), .vtk (legacy), .bdf, .unv, .mesh, .stl, .ply, .obj or .off");
@@ -26,9 +27,10 @@ void declare_mesh_keys(Schema& schema) {
   schema.reals(
       "body.divisions", {}, 0, {1, 1e5},
       "Elements along size_mm; cylinder and sphere: round, along; line, arc: one number; solids: three");
-  schema.real("body.radius_mm", 0, not_negative(),
-              "Radius of cylinder, sphere, arc (inner one of a solid, of an annulus)");
-  schema.real("body.wall_mm", 0, not_negative(), "Thickness of a solid cylinder, sphere or annulus");
+  schema.real(
+      "body.radius_mm", 0, not_negative(),
+      "Radius of cylinder, sphere, arc, disc, ball (inner one of a solid cylinder or sphere, of an annulus)");
+  schema.real("body.wall_mm", 0, not_negative(), "Thickness of a solid cylinder, sphere, annulus or disc");
   schema.reals("body.angle_deg", {0, 360}, 2, {-360, 360},
                "Azimuth from direction1 towards direction2, from and to");
   schema.reals("body.polar_deg", {0, 180}, 2, {0, 180}, "sphere: angle from the third axis, from and to");
@@ -94,7 +96,7 @@ void declare_material_keys(Schema& schema) {
 }  // namespace
 
 void declare_body(Schema& schema) {
-  schema.tables("body", "A body of a scene without fluid: shell, solid, beams or rigid surface");
+  schema.tables("body", "A body: shell, solid, beams or rigid surface");
   schema.text("body.name", "", "Its name; every body has its own");
   schema.choice("body.kind", "shell", {"shell", "solid", "beams", "rigid"}, "What it is made of");
   declare_mesh_keys(schema);
@@ -115,6 +117,9 @@ void declare_body(Schema& schema) {
   schema.reals("body.velocity_mm_per_s", {0, 0, 0}, 3, unlimited(), "Velocity at the start");
   schema.reals("body.spin_rad_per_s", {0, 0, 0}, 3, unlimited(),
                "Spin about its centre of mass at the start");
+  schema.texts(
+      "body.start_displacement", {},
+      "In fluid: displacement from the stress-free shape at the start, mm: three expressions of x, y, z");
   schema.choice(
       "body.motion", "fixed", {"fixed", "free"},
       "rigid: fixed, unless supports move it; free: six degrees of freedom (explicit, quasi_static)");

@@ -78,7 +78,7 @@ void declare_flow_probe(Schema& schema) {
   schema.choice(
       "flow_probe.quantity", "velocity",
       {"velocity", "pressure", "profile", "flow", "section_pressure", "side_flow", "force", "moment",
-       "wall_shear_stress", "kinetic_energy", "dissipation", "enstrophy", "divergence", "velocity_error",
+       "wall_shear_stress", "momentum", "kinetic_energy", "dissipation", "enstrophy", "divergence", "velocity_error",
        "pressure_error", "step"},
       "At a point; along a line (own file); through a section or a side; on an obstacle; of the whole "
       "box; against exact expressions");
@@ -96,7 +96,8 @@ void declare_flow_probe(Schema& schema) {
   schema.real("flow_probe.at_mm", 0, unlimited(), "Its place on that axis");
   schema.reals("flow_probe.low_mm", {-1e9, -1e9, -1e9}, 3, unlimited(), "Only faces above this corner");
   schema.reals("flow_probe.high_mm", {1e9, 1e9, 1e9}, 3, unlimited(), "and below this one");
-  schema.text("flow_probe.of", "", "force, moment, wall_shear_stress: the obstacle");
+  schema.text("flow_probe.of", "", "force, moment: the obstacle or body; wall_shear_stress: the obstacle");
+  schema.texts("flow_probe.with", {}, "force, moment: further obstacles and bodies, whose part is added");
   schema.real("flow_probe.reference_speed_mm_per_s", 0, not_negative(),
               "force: with it and the area, columns of coefficients, force / (density speed^2 area / 2)");
   schema.real("flow_probe.reference_area_mm2", 0, not_negative(), "The area");

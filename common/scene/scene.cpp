@@ -25,6 +25,7 @@ void declare_all(Schema& schema) {
   declare_contact_pair(schema);
   declare_dynamics(schema);
   declare_probe(schema);
+  declare_coupling(schema);
   declare_boundary(schema);
   declare_obstacle(schema);
   declare_flow_probe(schema);

@@ -30,6 +30,7 @@ void declare_tie(Schema& schema);
 void declare_contact_pair(Schema& schema);
 void declare_dynamics(Schema& schema);
 void declare_probe(Schema& schema);
+void declare_coupling(Schema& schema);
 void declare_boundary(Schema& schema);
 void declare_obstacle(Schema& schema);
 void declare_flow_probe(Schema& schema);

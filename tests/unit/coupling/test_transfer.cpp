@@ -105,6 +105,66 @@ TEST_P(TransferOfEveryKernel, LinearVelocityIsInterpolatedExactly) {
     EXPECT_LT((interpolated[a] - gradient * x[a] - Vec3::Constant(7)).norm(), 1e-12);
 }
 
+// Nodes up to the sides, beyond which the velocity goes on as its image.
+TEST_P(TransferOfEveryKernel, UpToSlipSidesAndWallsItIsAdjointAndExact) {
+  const fluid::Slab slab(MPI_COMM_SELF, small_grid(), false);
+  const fluid::Grid& grid = slab.grid;
+  const Surroundings beyond{
+      {{Beyond::slip, Beyond::wall}, {Beyond::wall, Beyond::slip}, {Beyond::wall, Beyond::slip}}};
+  Transfer transfer(slab, kernel_from(GetParam()), {}, beyond);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::normal_distribution<double> normal;
+  Points x(300);
+  for (Vec3& p : x)
+    for (int d = 0; d < 3; ++d) {
+      const double place = unit(random) < 0.3 ? 1.5 * unit(random) : unit(random) * grid.cells[d];
+      p[d] = grid.origin[d] + grid.h * (unit(random) < 0.3 ? grid.cells[d] - place : place);
+    }
+  x[0] = grid.low();
+  x[1] = grid.high();
+  transfer.locate(x);
+  const Points force = random_vectors(300, 12);
+  fluid::FaceField velocity(slab), density(slab);
+  const auto on_side = [&](int d, int i, int j, int k) {
+    const int at = std::array{i, j, k}[d];
+    return at == 0 || at == grid.cells[d];
+  };
+  for_owned_faces(slab, [&](int d, int i, int j, int k) {
+    velocity[d](i, j, k) = on_side(d, i, j, k) ? 0 : normal(random);
+  });
+  transfer.spread(force, density);
+  Points interpolated;
+  transfer.interpolate(velocity, interpolated);
+  double on_grid = 0, at_nodes = 0, size = 0;
+  for_owned_faces(slab, [&](int d, int i, int j, int k) {
+    const double part = std::pow(grid.h, 3) * density[d](i, j, k) * velocity[d](i, j, k);
+    on_grid += part;
+    size += std::abs(part);
+    if (on_side(d, i, j, k)) {
+      EXPECT_EQ(density[d](i, j, k), 0);
+    }
+  });
+  for (int a = 0; a < 300; ++a) at_nodes += force[a].dot(interpolated[a]);
+  EXPECT_NEAR(on_grid, at_nodes, 1e-14 * size);
+
+  // u = y above the wall y low (x: away from the wall there), w = -(z - top) below the slip side z high.
+  const double top = grid.high()[2], bottom = grid.low()[1];
+  velocity.fill(0);
+  for_owned_faces(slab, [&](int d, int i, int j, int k) {
+    const Vec3 at = grid.position(d, i, j, k);
+    if (d == 0) velocity[0](i, j, k) = at[1] - bottom;
+    if (d == 2) velocity[2](i, j, k) = top - at[2];
+  });
+  const Vec3 middle = 0.5 * (grid.low() + grid.high());
+  const Points near{{middle[0], bottom + 0.3 * grid.h, middle[2]},
+                    {middle[0], middle[1], top - 0.6 * grid.h}};
+  transfer.locate(near);
+  transfer.interpolate(velocity, interpolated);
+  EXPECT_NEAR(interpolated[0][0], 0.3 * grid.h, 1e-12);
+  EXPECT_NEAR(interpolated[1][2], 0.6 * grid.h, 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kernels, TransferOfEveryKernel, testing::ValuesIn(kernel_names()));
 
 // The composite kernels were made for this: the divergence of the interpolated field (linear in the normal
