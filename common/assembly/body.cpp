@@ -163,6 +163,7 @@ class Builder {
     v.gap = real("free_edge_gap_mm");
     v.peak = real("free_edge_peak_mm");
     v.exponent = real("attachment_exponent");
+    v.edge_exponent = real("free_edge_exponent");
     v.half_angle_deg = real("leaflet_half_angle_deg");
     v.base = real("base_mm");
     v.wall = wall;

@@ -32,6 +32,11 @@ Vec3 free_edge(const ValveShape& v, double s) {
   const double half_chord = v.radius * std::sin(half), sagitta = v.radius * std::cos(half) - v.gap;
   const double rise = v.peak * std::pow(std::cos(0.5 * M_PI * s), 2);
   const double z = v.height + v.post + rise;
+  if (v.edge_exponent > 0) {
+    const double inwards = std::pow(std::max(0.0, std::cos(0.5 * M_PI * s)), v.edge_exponent);
+    const double r = v.radius - (v.radius - v.gap) * inwards;
+    return {r * std::cos(s * half), r * std::sin(s * half), z};
+  }
   if (std::abs(sagitta) < 1e-9 * v.radius) return {v.gap, half_chord * s, z};
   const double bow = (half_chord * half_chord + sagitta * sagitta) / (2 * sagitta);
   const double t = s * 2 * std::atan(sagitta / half_chord);
@@ -137,11 +142,11 @@ class Outline {
 void check_valve(const ValveShape& v, const std::string& what) {
   if (!(v.height > 0) || !(v.post > 0))
     throw InputError("{}: height {} and post {} mm; expected both positive", what, v.height, v.post);
-  const double chord = v.radius * std::cos(v.half_angle_deg * rad_per_deg);
+  const double chord = v.edge_exponent > 0 ? v.radius : v.radius * std::cos(v.half_angle_deg * rad_per_deg);
   if (!(v.gap >= 0) || !(v.gap <= chord))
     throw InputError(
         "{}: gap is {} mm; expected between 0 and {:.4g} mm, the distance of the commissures' chord from the "
-        "axis",
+        "axis (with free_edge_exponent: the radius)",
         what, v.gap, chord);
 }
 

@@ -4,9 +4,11 @@
 // s in [-1, 1] goes over a leaflet, the azimuth being s half_angle. The attachment lies on the tube,
 //   z(s) = height |s|^exponent,
 // and ends in straight commissures of length `post` above it. The free edge runs from commissure to
-// commissure on a circle that bows inwards to `gap` from the axis, and rises by `peak` in its middle. The
-// leaflet is ruled between both: stress-free and half open, with a free edge longer than the chord, as tissue
-// valves have. Lengths mm.
+// commissure on a circle that bows inwards to `gap` from the axis, or with edge_exponent p > 0 on
+//   r(s) = radius - (radius - gap) cos^p(pi s/2),
+// which follows the tube beside the commissures and is longer; it rises by `peak` in its middle. The leaflet
+// is ruled between both: stress-free and half open, with a free edge longer than the chord, as tissue valves
+// have. Lengths mm.
 #pragma once
 
 #include "assembly/generate.hpp"
@@ -17,6 +19,7 @@ struct ValveShape {
   double radius = 0, height = 0, post = 0;
   double gap = 0, peak = 0;
   double exponent = 2;
+  double edge_exponent = 0;
   double half_angle_deg = 60;  ///< less than 60 leaves room for posts
   double base = 0;             ///< of the crown, below the attachment's lowest point
   double wall = 0;             ///< of solids: thickness towards the aorta (leaflet), outwards (crown)

@@ -43,6 +43,9 @@ void declare_mesh_keys(Schema& schema) {
   schema.real("body.commissure_mm", 0, not_negative(), "leaflet, crown: straight post above the attachment");
   schema.real("body.free_edge_gap_mm", 0, not_negative(),
               "leaflet: distance of the free edge's middle from the axis, at rest");
+  schema.real("body.free_edge_exponent", 0, {0, 10},
+              "leaflet: 0: its free edge is bowed to a circle, at rest; p > 0: it follows the tube beside the "
+              "commissures and turns inwards as cos^p");
   schema.real("body.free_edge_peak_mm", 0, not_negative(), "leaflet: rise of the free edge in its middle");
   schema.real("body.leaflet_half_angle_deg", 60, {10, 60},
               "leaflet, crown: azimuth from its middle to a commissure; below 60: room for posts");
