@@ -278,6 +278,11 @@ void Flow::penalise(double dt) {
   solids_.penalise(dt, parameters_.penalisation_s, next_, velocity_);  // next_: before the prediction
 }
 
+std::array<const double*, 3> Flow::faces_of(int place, int k) const {
+  const int nx = slab_.grid.cells[0], i = place % nx, j = place / nx;
+  return {velocity_[0].row(j, k) + i, velocity_[1].row(j, k) + i, velocity_[2].row(j, k) + i};
+}
+
 void Flow::fill_source(int k, double per_dt, double* plane) {
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const double factor = parameters_.density * per_dt / slab_.grid.h;
@@ -299,7 +304,8 @@ void Flow::fill_source(int k, double per_dt, double* plane) {
     for (int i = 0; i < nx; ++i)
       b[i] = factor * ((u[i + 1] - u[i]) + (v[i + sy] - v[i]) + (w[i + sz] - w[i]));
   }
-  for (const int cell : solids_.dead_cells(k)) plane[cell] = 0;
+  for (const Solids::CutCell& cell : solids_.cut_cells(k))
+    plane[cell.place] = factor * cell.difference(faces_of(cell.place, k), {1, sy, sz});
 }
 
 StepReport Flow::project(double dt) {

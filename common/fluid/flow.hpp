@@ -200,6 +200,8 @@ class Flow {
   void fill_phi_ghosts(Field& pressure, const std::array<double, 2>& end_pressure);
   void fill_source_fourth_order(int k, double per_dt, double* plane) const;
   StepReport correct_fourth_order(double dt);
+  /// The low faces of a cell of the local plane k.
+  std::array<const double*, 3> faces_of(int place, int k) const;
   void fill_source(int k, double per_dt, double* plane);
   StepReport correct(double dt);
   StepReport report_of(double dt, double energy, double speed) const;

@@ -26,7 +26,11 @@ double Flow::outflow(int axis, int side) const {
     std::array<int, 3> at{0, 0, 0};
     at[axis] = side == 0 ? 0 : axis == 2 ? slab_.planes : grid.cells[axis];
     for (at[q] = 0; at[q] < (q == 2 ? slab_.planes : grid.cells[q]); ++at[q]) {
-      for (at[p] = 0; at[p] < grid.cells[p]; ++at[p]) sum += velocity_[axis](at[0], at[1], at[2]);
+      for (at[p] = 0; at[p] < grid.cells[p]; ++at[p]) {
+        // What faces carry that the interpolated wall closes is no flow.
+        if (!solids_.interpolated() || !solid_at_side(axis, side, at[p], at[q]))
+          sum += velocity_[axis](at[0], at[1], at[2]);
+      }
     }
   }
   return (side == 0 ? -1 : 1) * mpi::sum(slab_.comm, sum) * grid.h * grid.h;
@@ -114,19 +118,18 @@ double Flow::divergence() const {
     return mpi::max(slab_.comm, largest);
   }
   for (int k = 0; k < slab_.planes; ++k) {
-    auto dead = solids_.dead_cells(k).begin();
-    const auto last_dead = solids_.dead_cells(k).end();
+    auto cut = solids_.cut_cells(k).begin();
+    const auto last_cut = solids_.cut_cells(k).end();
     for (int j = 0; j < grid.cells[1]; ++j) {
       const double* u = velocity_[0].row(j, k);
       const double* v = velocity_[1].row(j, k);
       const double* w = velocity_[2].row(j, k);
       for (int i = 0; i < grid.cells[0]; ++i) {
-        if (dead != last_dead && *dead == j * grid.cells[0] + i) {
-          ++dead;
-          continue;
+        double sum = (u[i + 1] - u[i]) + (v[i + slab_.stride_y] - v[i]) + (w[i + slab_.stride_z] - w[i]);
+        if (cut != last_cut && cut->place == j * grid.cells[0] + i) {
+          sum = cut->difference({u + i, v + i, w + i}, {1, slab_.stride_y, slab_.stride_z});
+          ++cut;
         }
-        const double sum =
-            (u[i + 1] - u[i]) + (v[i + slab_.stride_y] - v[i]) + (w[i + slab_.stride_z] - w[i]);
         largest = std::max(largest, std::abs(sum));
       }
     }

@@ -36,7 +36,7 @@ Wall wall_from(const std::string& name) {
 
 Solids::Solids(const Slab& slab, double density, Wall form) : slab_(slab), density_(density), form_(form) {
   names_ = {"wall"};
-  dead_cells_.resize(slab.planes);
+  cut_cells_.resize(slab.planes);
   motion_.resize(1);
   force_.assign(1, Vec3::Zero());
   moment_.assign(1, Vec3::Zero());
@@ -84,7 +84,7 @@ void Solids::set_lumen(const Distance& distance) {
        [&](const Vec3& x) { return !(distance(x) < 0); });
   if (form_ != Wall::interpolated) return;
   find_ghosts(distance);
-  find_dead_cells(distance);
+  find_cut_cells(distance);
 }
 
 void Solids::find_ghosts(const Distance& distance) {
@@ -165,20 +165,23 @@ void Solids::find_ghosts(const Distance& distance) {
   }
 }
 
-void Solids::find_dead_cells(const Distance& distance) {
+void Solids::find_cut_cells(const Distance& distance) {
   const Grid& grid = slab_.grid;
   for (int k = 0; k < slab_.planes; ++k) {
-    dead_cells_[k].clear();
+    cut_cells_[k].clear();
+    const int z = k + slab_.first;
     for (int j = 0; j < grid.cells[1]; ++j) {
       for (int i = 0; i < grid.cells[0]; ++i) {
-        bool dead = true;
-        for (int d = 0; d < 3 && dead; ++d) {
-          for (int up = 0; up < 2 && dead; ++up) {
-            const int z = k + slab_.first;
-            dead = !(distance(grid.position(d, i + (d == 0) * up, j + (d == 1) * up, z + (d == 2) * up)) < 0);
+        CutCell cell{j * grid.cells[0] + i, {}};
+        bool whole = true;
+        for (int d = 0; d < 3; ++d) {
+          for (int up = 0; up < 2; ++up) {
+            const Vec3 x = grid.position(d, i + (d == 0) * up, j + (d == 1) * up, z + (d == 2) * up);
+            cell.open[d][up] = distance(x) < 0;
+            whole = whole && cell.open[d][up];
           }
         }
-        if (dead) dead_cells_[k].push_back(j * grid.cells[0] + i);
+        if (!whole) cut_cells_[k].push_back(cell);
       }
     }
   }

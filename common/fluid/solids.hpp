@@ -14,10 +14,11 @@
 //
 // along the wall and normal to it, u linear between its faces, delta the first of 1, 1.25, ... 2.25 h whose
 // faces all lie inside the lumen; U = 0 where there is none (narrow gaps). Second order at the wall for the
-// velocity; bodies stay sharp. The normal part, because flow along the normal grows with the square of the
-// distance: continued linearly it leaks through the wall. u is that of the last step's end: with the
-// predicted velocity, in which the old pressure drives a leak on, leaks that answer themselves with less than
-// -1/3 grow (docs/decisions/fluid.md).
+// velocity; bodies stay sharp. What ghost faces carry is for the momentum of the faces beside them; volume is
+// kept by the open faces alone (cut_cells). The normal part, because flow along the normal grows with the
+// square of the distance: continued linearly it leaks through the wall. u is that of the last step's end:
+// with the predicted velocity, in which the old pressure drives a leak on, leaks that answer themselves with
+// less than -1/3 grow (docs/decisions/fluid.md).
 //
 // A face belongs to one body, the first that claims it; body 0 is the lumen's wall.
 #pragma once
@@ -85,8 +86,20 @@ class Solids {
   /// at.
   long ghost_faces() const;
   long still_ghost_faces() const { return still_ghosts_; }
-  /// Places (j nx + i) of the dead cells in the local plane k; none with the staircase.
-  const std::vector<int>& dead_cells(int k) const { return dead_cells_[k]; }
+  /// A cell with faces that the interpolated wall closes.
+  struct CutCell {
+    int place;                                ///< j nx + i
+    std::array<std::array<bool, 2>, 3> open;  ///< of each direction: low and high face
+    /// Sum of the differences of u across the cell over its open faces; u[d]: at its low face, stride apart.
+    double difference(const std::array<const double*, 3>& u,
+                      const std::array<std::ptrdiff_t, 3>& stride) const {
+      double sum = 0;
+      for (int d = 0; d < 3; ++d) sum += (open[d][1] ? u[d][stride[d]] : 0) - (open[d][0] ? u[d][0] : 0);
+      return sum;
+    }
+  };
+  /// Those in the local plane k, by place; none with the staircase.
+  const std::vector<CutCell>& cut_cells(int k) const { return cut_cells_[k]; }
   bool interpolated() const { return form_ == Wall::interpolated; }
 
   /// each(index in a Field, velocity of the body there) for the held faces of component d, in fixed order.
@@ -136,7 +149,7 @@ class Solids {
     return sum;
   }
   void find_ghosts(const Distance& distance);
-  void find_dead_cells(const Distance& distance);
+  void find_cut_cells(const Distance& distance);
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * slab_.grid.cells[1] + j) * slab_.grid.cells[0] + i;
   }
@@ -157,8 +170,8 @@ class Solids {
   std::array<std::vector<std::uint8_t>, 4> owner_;
   std::array<std::vector<Run>, 3> walls_;  ///< without ghost faces
   std::array<std::vector<Ghost>, 3> ghosts_;
-  std::vector<std::vector<int>> dead_cells_;  ///< of each local plane
-  std::array<std::vector<Held>, 3> held_;     ///< faces of bodies other than the wall
+  std::vector<std::vector<CutCell>> cut_cells_;  ///< of each local plane
+  std::array<std::vector<Held>, 3> held_;        ///< faces of bodies other than the wall
 };
 
 }  // namespace valsalva::fluid
