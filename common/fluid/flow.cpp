@@ -17,7 +17,16 @@ const Boundaries& checked(const Boundaries& boundaries) {
   return boundaries;
 }
 
-std::unique_ptr<PressureSolver> pressure_solver(const Slab& slab, const Boundaries& boundaries, int order) {
+std::unique_ptr<PressureSolver> pressure_solver(const Slab& slab, const Boundaries& boundaries,
+                                                const FlowParameters& parameters) {
+  const int order = parameters.order;
+  if (parameters.krylov) {
+    if (order != 2 || parameters.implicit_viscosity)
+      throw InputError(
+          "fluid: the pressure of the fluid's cells alone (krylov) is of order 2 and goes with explicit "
+          "viscosity");
+    return std::make_unique<KrylovPressure>(slab, boundaries, *parameters.krylov);
+  }
   if (order == 2) return std::make_unique<Poisson>(slab, boundaries);
   if (order != 4) throw InputError("fluid: order {} in space; expected 2 or 4", order);
   if (!boundaries.periodic(0) || !boundaries.periodic(1) || !boundaries.periodic(2))
@@ -35,7 +44,7 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
       momentum_(slab_, boundaries_, parameters.convection,
                 parameters.implicit_viscosity ? 0 : parameters.viscosity / parameters.density,
                 parameters.order),
-      poisson_(pressure_solver(slab_, boundaries_, parameters.order)),
+      poisson_(pressure_solver(slab_, boundaries_, parameters)),
       velocity_(slab_),
       next_(slab_),
       rate_(slab_),
@@ -52,6 +61,11 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
       throw InputError("fluid: shear-thinning blood and subgrid models are of order 2; use order 2");
     extra_viscosity_ = std::make_unique<ExtraViscosity>(slab_, boundaries_, parameters.extra_viscosity,
                                                         parameters.viscosity, parameters.density);
+  }
+  if (parameters.krylov) {
+    krylov_ = static_cast<KrylovPressure*>(poisson_.get());
+    openings_ = std::make_unique<Openings>(slab_, parameters.viscosity / parameters.density);
+    parameters_.penalisation_s = 1e-30;  // exact to round-off
   }
   fill_ghosts();
 }
@@ -70,6 +84,7 @@ void Flow::set_velocity(const std::function<double(int, const Vec3&)>& value) {
   }
   previous_dt_ = 0;
   rate_.fill(0);
+  if (krylov_) prepare_cells();
   apply_inflow(velocity_);
   fill_ghosts();
 }
@@ -206,6 +221,10 @@ void Flow::predict(double dt, const PredictOptions& options) {
 void Flow::advance(Advance step, const PredictOptions& options) {
   if (!(step.dt > 0)) throw NumericalFailure("fluid: a time step of {} s", step.dt);
   step.density = parameters_.density;
+  if (krylov_) {
+    prepare_cells();
+    openings_->keep_rates(rate_);
+  }
   if (options.force) step.force = &force_;
   if (options.old_pressure) {
     fill_phi_ghosts(pressure_, end_pressure_);
@@ -217,6 +236,7 @@ void Flow::advance(Advance step, const PredictOptions& options) {
     extra_viscosity_->update(velocity_);
     extra_viscosity_->add(velocity_, step.dt * step.weight_new, rate_, next_);
   }
+  if (krylov_) openings_->advance(velocity_, step, rate_, next_);
   apply_inflow(next_);
   if (implicit_viscosity_) {
     solids_.prepare();
@@ -276,6 +296,7 @@ void Flow::add_impulse(const FaceField& force, double dt) {
 
 void Flow::penalise(double dt) {
   solids_.penalise(dt, parameters_.penalisation_s, next_, velocity_);  // next_: before the prediction
+  if (krylov_) openings_->prescribe(velocity_);
 }
 
 std::array<const double*, 3> Flow::faces_of(int place, int k) const {
@@ -309,6 +330,7 @@ void Flow::fill_source(int k, double per_dt, double* plane) {
 }
 
 StepReport Flow::project(double dt) {
+  if (krylov_) return project_cells(dt);
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const bool fourth = parameters_.order == 4;
   // The exchange does not reach the highest face of a closed box, which belongs to its own slab.

@@ -20,6 +20,11 @@
 // Third order in time in periodic boxes; stable to three times the step of AB2 for three times its cost,
 // without its growth of undamped waves.
 //
+// With FlowParameters::krylov the pressure is that of the fluid's cells alone: no gradient acts on solid
+// faces, which have their body's velocity exactly (penalisation_s does not count), and `Openings` may cut the
+// vessel. Only faces of the fluid are corrected; kinetic energy, speed and divergence are those of the
+// fluid's cells.
+//
 // Order 4 in space replaces convection, viscosity, gradient and divergence (momentum.hpp, fourth_order.hpp)
 // and solves for the pressure with the same operators (poisson_periodic.hpp).
 //
@@ -35,13 +40,16 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fluid/boundary.hpp"
 #include "fluid/grid.hpp"
 #include "fluid/implicit_viscosity.hpp"
+#include "fluid/krylov_pressure.hpp"
 #include "fluid/momentum.hpp"
+#include "fluid/openings.hpp"
 #include "fluid/pressure_solver.hpp"
 #include "fluid/solids.hpp"
 #include "fluid/viscosity.hpp"
@@ -58,6 +66,9 @@ struct FlowParameters {
   int order = 2;                    ///< in space; 4 only in boxes periodic in all directions
   bool implicit_viscosity = false;  ///< of the constant part (implicit_viscosity.hpp)
   ExtraViscosityParameters extra_viscosity;
+  /// The pressure of the fluid's cells alone (krylov_pressure.hpp): solids are tight and carry no pressure,
+  /// and the vessel may have openings. None: the direct solver, for the whole box.
+  std::optional<KrylovSettings> krylov;
 };
 
 struct PredictOptions {
@@ -100,7 +111,7 @@ class Flow {
   void clear_force() { force_.fill(0); }
   /// Adds what was spread into ghost faces to the ranks (or periodic images) that own them.
   void accumulate_force() { accumulate_ghosts(slab_, boundaries_, force_); }
-  void fill_ghosts() { fill_velocity_ghosts(slab_, boundaries_, velocity_); }
+  void fill_ghosts();
 
   /// Initial velocity (component d at the position of its face, mm/s) and pressure; forgets the step history.
   void set_velocity(const std::function<double(int d, const Vec3& x)>& value);
@@ -128,6 +139,22 @@ class Flow {
   void set_inflow(End end, const std::function<double(const Vec3& x)>& w);
   /// The same shape, scaled to a flow in mm3/s along +z. InputError when the shape carries no flow.
   void set_inflow_rate(End end, const std::function<double(const Vec3& x)>& shape, double rate);
+
+  /// Where the vessel is open; needs FlowParameters::krylov. After the solids that stand still are placed.
+  int add_opening(const OpeningPlane& plane);
+  /// Before predict: what stands at the end of the step.
+  Openings& openings() { return *openings_; }
+  const Openings* openings_if_any() const {
+    return openings_ && openings_->count() > 0 ? openings_.get() : nullptr;
+  }
+  /// Flow out of the fluid through an opening, mm3/s.
+  double opening_flow(int opening) const { return openings_->outflow(opening, velocity_); }
+  /// Of the pressure in the last step; 0 with the direct solver.
+  int pressure_iterations() const { return krylov_ ? krylov_->iterations() : 0; }
+  /// Cells whose pressure is solved for.
+  double pressure_unknowns() const {
+    return krylov_ ? krylov_->unknowns() : static_cast<double>(slab_.grid.all_cells());
+  }
 
   void predict(double dt, const PredictOptions& options = {});
   /// u += dt/rho * force density, between predict and project.
@@ -198,6 +225,13 @@ class Flow {
   void apply_inflow(FaceField& velocity) const;
   void advance(Advance step, const PredictOptions& options);
   void fill_phi_ghosts(Field& pressure, const std::array<double, 2>& end_pressure);
+  // Fluid cells alone: flow_cells.cpp.
+  void prepare_cells();
+  void list_cells();
+  StepReport project_cells(double dt);
+  StepReport correct_cells(double dt);
+  double largest_predicted() const;
+  void extend_pressure();
   void fill_source_fourth_order(int k, double per_dt, double* plane) const;
   StepReport correct_fourth_order(double dt);
   /// The low faces of a cell of the local plane k.
@@ -217,6 +251,20 @@ class Flow {
   Solids solids_;
   Momentum momentum_;
   std::unique_ptr<PressureSolver> poisson_;
+  KrylovPressure* krylov_ = nullptr;  ///< poisson_, where it is that
+  std::unique_ptr<Openings> openings_;
+  long cells_of_version_ = -1;  ///< of the solids
+  struct Run {                  // side by side in x
+    std::ptrdiff_t first;
+    int count;
+  };
+  struct Shell {  // a cell without pressure beside the fluid, and the cells whose mean it shows
+    std::ptrdiff_t cell;
+    std::vector<std::ptrdiff_t> from;
+  };
+  std::array<std::vector<Run>, 3> fluid_faces_;  ///< without those of openings
+  std::vector<Run> fluid_cells_;
+  std::vector<Shell> shell_;
   std::unique_ptr<ImplicitViscosity> implicit_viscosity_;
   std::unique_ptr<ExtraViscosity> extra_viscosity_;  ///< none: the viscosity is constant
   FaceField velocity_, next_, rate_, force_;

@@ -27,8 +27,8 @@ double Flow::outflow(int axis, int side) const {
     at[axis] = side == 0 ? 0 : axis == 2 ? slab_.planes : grid.cells[axis];
     for (at[q] = 0; at[q] < (q == 2 ? slab_.planes : grid.cells[q]); ++at[q]) {
       for (at[p] = 0; at[p] < grid.cells[p]; ++at[p]) {
-        // What faces carry that the interpolated wall closes is no flow.
-        if (!solids_.interpolated() || !solid_at_side(axis, side, at[p], at[q]))
+        // What faces carry beyond openings, and those that the interpolated wall closes, is no flow.
+        if (!(krylov_ || solids_.interpolated()) || !solid_at_side(axis, side, at[p], at[q]))
           sum += velocity_[axis](at[0], at[1], at[2]);
       }
     }
@@ -99,7 +99,12 @@ double Flow::kinetic_energy() const {
     for (int k = 0; k < planes; ++k) {
       for (int j = 0; j < grid.cells[1]; ++j) {
         const double* u = velocity_[d].row(j, k);
-        for (int i = 0; i < grid.cells[0]; ++i) sum += u[i] * u[i];
+        if (krylov_) {
+          const std::uint8_t* owner = solids_.owner_row(d, j, k);
+          for (int i = 0; i < grid.cells[0]; ++i) sum += owner[i] == 0 ? u[i] * u[i] : 0;
+        } else {
+          for (int i = 0; i < grid.cells[0]; ++i) sum += u[i] * u[i];
+        }
       }
     }
   }
@@ -130,6 +135,7 @@ double Flow::divergence() const {
           sum = cut->difference({u + i, v + i, w + i}, {1, slab_.stride_y, slab_.stride_z});
           ++cut;
         }
+        if (krylov_ && !krylov_->solves(i, j, k)) continue;
         largest = std::max(largest, std::abs(sum));
       }
     }

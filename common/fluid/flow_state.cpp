@@ -70,6 +70,11 @@ std::map<std::string, state::Array> Flow::save() const {
     keep("rate_" + axis[d], rate_[d], d);
   }
   keep("pressure", pressure_, 3);
+  if (krylov_ && cells_of_version_ >= 0) {
+    Field start(slab_);
+    krylov_->store_start(start);
+    keep("pressure_start", start, 3);
+  }
   if (slab_.rank == 0) {
     arrays["fluid/previous_step_s"] = state::Array::scalar(previous_dt_);
     arrays["fluid/end_pressure_Pa"] =
@@ -84,6 +89,12 @@ void Flow::load(const state::State& state) {
     scatter(slab_, state, "fluid/rate_" + axis[d], rate_[d], d);
   }
   scatter(slab_, state, "fluid/pressure", pressure_, 3);
+  if (krylov_) {
+    prepare_cells();
+    Field start(slab_);
+    scatter(slab_, state, "fluid/pressure_start", start, 3);
+    krylov_->load_start(start);
+  }
   previous_dt_ = state.array("fluid/previous_step_s").number("fluid/previous_step_s");
   const auto& ends = state.array("fluid/end_pressure_Pa").doubles("fluid/end_pressure_Pa");
   if (ends.size() != 2)

@@ -73,6 +73,7 @@ void Solids::mark(int body, const Vec3& low, const Vec3& high, const Inside& ins
     }
   }
   listed_ = false;
+  ++version_;
 }
 
 void Solids::set_lumen(const Distance& distance) {
@@ -210,6 +211,7 @@ void Solids::clear_body(int body) {
     std::replace(owners.begin(), owners.end(), static_cast<std::uint8_t>(1 + body), std::uint8_t{0});
   }
   listed_ = false;
+  ++version_;
 }
 
 void Solids::mark_triangles(int body, const Points& points, const std::vector<Triangle>& triangles,

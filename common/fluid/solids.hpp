@@ -69,6 +69,14 @@ class Solids {
   void mark_segments(int body, const Points& points, const std::vector<Edge>& segments, double radius);
   /// Marks the free faces with distance(x) < 0 inside the box low..high.
   void mark_inside(int body, const Distance& distance, const Vec3& low, const Vec3& high);
+  /// Takes one face (d = 3: cell; owned, k local) for a body, whoever held it.
+  void claim(int body, int d, int i, int j, int k) {
+    owner_[d][index(i, j, k)] = static_cast<std::uint8_t>(1 + body);
+    listed_ = false;
+    ++version_;
+  }
+  /// Changes whenever faces change hands.
+  long version() const { return version_; }
   /// Not for the wall, which is at rest.
   void set_motion(int body, const RigidMotion& motion);
   const RigidMotion& motion(int body) const { return motion_[body]; }
@@ -162,6 +170,7 @@ class Solids {
   double density_;
   Wall form_;
   bool listed_ = true;
+  long version_ = 0;
   long still_ghosts_ = 0;
   std::vector<std::string> names_;
   std::vector<RigidMotion> motion_;

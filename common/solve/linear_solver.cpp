@@ -6,42 +6,14 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/petsc.hpp"
 
 namespace valsalva::solve {
 
+using petsc::require;
 using structure::BlockMatrix;
 
 namespace {
-
-void require(PetscErrorCode code, const char* what) {
-  if (code != 0) throw EnvironmentError("PETSc: {} failed with code {}", what, static_cast<int>(code));
-}
-
-// PETSc for the whole program; MPI too, unless the program has started it.
-class Library {
- public:
-  Library() {
-    PetscBool running = PETSC_FALSE;
-    PetscInitialized(&running);
-    if (running) return;
-    require(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"), "options");
-    require(PetscInitializeNoArguments(), "start");
-    require(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr), "error handler");
-    owner_ = true;
-  }
-  ~Library() {
-    int ended = 0;
-    MPI_Finalized(&ended);
-    if (owner_ && !ended) PetscFinalize();
-  }
-
- private:
-  bool owner_ = false;
-};
-
-void start_library() {
-  static const Library library;
-}
 
 bool is_symmetric(const BlockMatrix& k, const std::vector<std::uint8_t>& fixed) {
   double largest = 0, difference = 0;
@@ -80,9 +52,7 @@ struct LinearSolver::Petsc {
 
   ~Petsc() { release(); }
   void release() {
-    int ended = 0;
-    MPI_Finalized(&ended);
-    if (!ended) {
+    if (petsc::can_release()) {
       KSPDestroy(&solver);
       MatDestroy(&matrix);
       VecDestroy(&right);
@@ -254,7 +224,7 @@ LinearSolver::~LinearSolver() = default;
 
 LinearReport LinearSolver::solve(const BlockMatrix& k, const std::vector<std::uint8_t>& fixed,
                                  const Eigen::VectorXd& rhs, Eigen::VectorXd& u, const Points& positions) {
-  start_library();
+  petsc::start();
   VALSALVA_ASSERT(rhs.size() == 3 * k.slots() && u.size() == rhs.size() &&
                   static_cast<Eigen::Index>(fixed.size()) == rhs.size());
   Petsc& p = *petsc_;
