@@ -98,8 +98,22 @@ Probes::Probes(const Case& scene, const Sides& sides, const Obstacles& obstacles
       });
     } else if (quantity == "side_flow") {
       const SideOfBox side = side_from(e.text("side"), what);
+      add({name + "_mL_per_s"}, [=, &sides](const Measured& m, std::vector<double>& out) {
+        out.push_back(sides.side_flow(m.flow, side) / units::mm3_per_mL);
+      });
+    } else if (quantity == "opening_flow") {
+      const int opening = sides.openings().find(e.text("of"), what);
       add({name + "_mL_per_s"}, [=](const Measured& m, std::vector<double>& out) {
-        out.push_back(m.flow.outflow(m.frame.solver_axis(side.axis), side.side) / units::mm3_per_mL);
+        out.push_back(m.flow.opening_flow(opening) / units::mm3_per_mL);
+      });
+    } else if (quantity == "opening_pressure") {
+      const int opening = sides.openings().find(e.text("of"), what);
+      add({name + "_Pa"}, [=](const Measured& m, std::vector<double>& out) {
+        out.push_back(m.flow.openings().pressure(opening));
+      });
+    } else if (quantity == "pressure_iterations") {
+      add({name}, [](const Measured& m, std::vector<double>& out) {
+        out.push_back(m.flow.pressure_iterations());
       });
     } else if (quantity == "force" || quantity == "moment") {
       std::vector<std::string> names{e.text("of")}, soft;

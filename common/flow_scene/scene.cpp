@@ -55,8 +55,8 @@ fluid::Grid grid_of(const Case& scene, const Sides& sides) {
           "{}: fluid: the box is {} cells of {} mm long in {}, {} were asked for; cells are cubes of one "
           "size",
           file, count, h, "xyz"[e], asked);
-    grid.cells[own] = static_cast<int>(asked);
-    grid.origin[own] = low[e];
+    grid.cells[own] = static_cast<int>(asked) + sides.more_cells(e, 0) + sides.more_cells(e, 1);
+    grid.origin[own] = low[e] - sides.more_cells(e, 0) * h;
     if (grid.cells[own] < fluid::ghosts)
       throw InputError("{}: fluid: {} cells along {}; expected at least {}", file, grid.cells[own], "xyz"[e],
                        fluid::ghosts);
@@ -64,8 +64,9 @@ fluid::Grid grid_of(const Case& scene, const Sides& sides) {
   return grid;
 }
 
-fluid::FlowParameters parameters_of(const Case& scene) {
+fluid::FlowParameters parameters_of(const Case& scene, const Sides& sides) {
   fluid::FlowParameters p;
+  if (sides.fluid_cells()) p.krylov = fluid::KrylovSettings{.tolerance = scene.real("fluid.pressure_tolerance")};
   p.density = scene.real("fluid.density_g_per_mm3");
   p.viscosity = scene.real("fluid.viscosity_Pa_s");
   p.order = static_cast<int>(scene.integer("fluid.order"));
@@ -144,7 +145,7 @@ FlowScene::FlowScene(const Case& scene, MPI_Comm comm)
       grid_(grid_of(scene, sides_)),
       obstacles_(scene, grid_.h),
       bodies_(Bodies::of(scene, obstacles_)),
-      flow_(std::make_unique<fluid::Flow>(comm, grid_, sides_.boundaries(), parameters_of(scene))),
+      flow_(std::make_unique<fluid::Flow>(comm, grid_, sides_.boundaries(), parameters_of(scene, sides_))),
       probes_(scene, sides_, obstacles_, bodies_.get()),
       history_(columns_of(probes_, bodies_.get(), scene.file().string())),
       force_(scene.texts("fluid.body_force_Pa_per_mm"),
@@ -169,6 +170,7 @@ void FlowScene::start(const Case& scene) {
   const VectorExpression velocity(scene.texts("fluid.velocity"), file + ": fluid.velocity");
   const Expression pressure(scene.text("fluid.pressure"), file + ": fluid.pressure");
   obstacles_.place(*flow_, frame(), 0, bodies_ ? bodies_->places() : Points{});
+  sides_.openings().place(*flow_, frame(), obstacles_);
   for (const Case& probe : scene.entries("flow_probe")) {
     const std::string& quantity = probe.text("flow_probe.quantity");
     if (quantity != "force" && quantity != "moment") continue;

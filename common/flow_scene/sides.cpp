@@ -36,23 +36,6 @@ std::vector<SideOfBox> sides_from(const std::vector<std::string>& names, const s
   return sides;
 }
 
-void read_table(const std::filesystem::path& file, const std::string& what, std::vector<double>& time,
-                std::vector<double>& value) {
-  std::ifstream in(file);
-  if (!in) throw InputError("{}: factor_file '{}' cannot be read", what, file.string());
-  for (std::string line; std::getline(in, line);) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream fields(line);
-    double t, f;
-    if (!(fields >> t >> f)) continue;  // header, comment
-    time.push_back(t);
-    value.push_back(f);
-  }
-  if (time.empty())
-    throw InputError("{}: factor_file '{}' holds no row of two numbers, time_s and factor", what,
-                     file.string());
-}
-
 }  // namespace
 
 SideOfBox side_from(const std::string& name, const std::string& what) {
@@ -65,42 +48,8 @@ SideOfBox side_from(const std::string& name, const std::string& what) {
                    name);
 }
 
-Factor::Factor(const Case& scene, const Case& entry, const std::string& what)
-    : time_(entry.reals("boundary.time_s")),
-      value_(entry.reals("boundary.factor")),
-      period_s_(entry.real("boundary.period_s")) {
-  const std::string &file = entry.text("boundary.factor_file"), &text = entry.text("boundary.factor_of_t");
-  if ((!time_.empty() || !value_.empty()) + !file.empty() + !text.empty() > 1)
-    throw InputError("{}: more than one of factor, factor_file, factor_of_t; expected one", what);
-  if (!text.empty()) expression_.emplace(text, what + ", factor_of_t");
-  if (expression_ && expression_->varies())
-    throw InputError("{}: factor_of_t '{}' has x, y or z; expected t alone", what, text);
-  if (!file.empty()) read_table(scene.resolve(file), what, time_, value_);
-  if (time_.empty() && value_.empty()) return;
-  const assembly::TimeTable checked(time_, value_, what);
-  if (period_s_ > 0 && time_.back() > period_s_)
-    throw InputError("{}: time_s ends at {} s, after period_s = {}", what, time_.back(), period_s_);
-}
-
-double Factor::operator()(double time_s) const {
-  if (expression_) return (*expression_)(Vec3::Zero(), time_s);
-  if (time_.empty()) return 1;
-  double t = time_s;
-  if (period_s_ > 0) t -= period_s_ * std::floor(t / period_s_);
-  const auto next = std::upper_bound(time_.begin(), time_.end(), t);
-  std::size_t to = next - time_.begin();
-  const bool wraps = period_s_ > 0 && (to == 0 || to == time_.size());
-  if (!wraps && to == 0) return value_.front();
-  if (!wraps && to == time_.size()) return value_.back();
-  const std::size_t from = to == 0 ? time_.size() - 1 : to - 1;
-  const double start = to == 0 ? time_[from] - period_s_ : time_[from];
-  const double end = to == time_.size() ? time_[0] + period_s_ : time_[to];
-  if (to == time_.size()) to = 0;
-  const double share = end > start ? (t - start) / (end - start) : 0;
-  return value_[from] + share * (value_[to] - value_[from]);
-}
-
-Sides::Sides(const Case& scene) {
+Sides::Sides(const Case& scene) : openings_(scene) {
+  for (auto& sides : cut_) sides = {-1, -1};
   for (auto& sides : kind_) sides = {Side::slip, Side::slip};
   for (auto& sides : entry_of_) sides = {-1, -1};
   for (const Case& entry : scene.entries("boundary")) {
@@ -115,32 +64,34 @@ Sides::Sides(const Case& scene) {
   }
   int open_axis = 2;
   bool open = false;
+  const std::string solver = scene.text("fluid.pressure_solver");
   for (int axis = 0; axis < 3; ++axis) {
     if ((kind_[axis][0] == Side::periodic) != (kind_[axis][1] == Side::periodic))
       throw InputError("{}: one side along {} is periodic and the other is not; make both periodic",
                        scene.file().string(), axis_name[axis]);
     for (int side = 0; side < 2; ++side) {
       if (kind_[axis][side] != Side::open) continue;
-      if (open && axis != open_axis)
-        throw InputError(
-            "{}: outflow sides along {} and along {}; known pressure is possible along one axis only: give "
-            "the others as inflow with a known velocity",
-            scene.file().string(), axis_name[open_axis], axis_name[axis]);
+      const Case& entry = scene.entries("boundary")[entry_of_[axis][side]];
+      if (!open || axis == open_axis) {
+        outlets_.push_back({side, KnownPressure(scene, entry, "boundary")});
+        open_axis = axis;
+      } else {
+        if (solver == "direct")
+          throw InputError(
+              "{}: outflow sides along {} and along {}; the direct pressure solver knows pressure along one "
+              "axis only: leave fluid.pressure_solver, or give the others as inflow with a known velocity",
+              scene.file().string(), axis_name[open_axis], axis_name[axis]);
+        cut_[axis][side] = openings_.add_side(name_of({axis, side}), axis, side,
+                                              KnownPressure(scene, entry, "boundary"));
+      }
       open = true;
-      open_axis = axis;
     }
   }
   frame_ = Frame::with_open_axis(open_axis);
-  for (int side = 0; side < 2; ++side) {
-    if (!open || kind_[open_axis][side] != Side::open) continue;
-    const Entry& entry = entries_[entry_of_[open_axis][side]];
-    Outlet outlet{side, &entry, nullptr};
-    if (entry.windkessel)
-      outlet.terminal = std::make_unique<circulation::Windkessel>(*entry.windkessel, entry.pressure);
-    else if (entry.resistance > 0)
-      outlet.terminal = std::make_unique<circulation::Resistance>(entry.resistance, entry.pressure);
-    outlets_.push_back(std::move(outlet));
-  }
+  if (openings_.any() && solver == "direct")
+    throw InputError("{}: [[opening]] needs fluid.pressure_solver auto or krylov, found direct",
+                     scene.file().string());
+  fluid_cells_ = openings_.any() || solver == "krylov";
 }
 
 Sides::Entry Sides::read(const Case& scene, const Case& entry) const {
@@ -163,8 +114,7 @@ Sides::Entry Sides::read(const Case& scene, const Case& entry) const {
   out.speed = e.real("speed_mm_per_s");
   out.mean = e.real("mean_speed_mm_per_s");
   out.flow_mm3 = e.real("flow_mL_per_s") * units::mm3_per_mL;
-  out.pressure = e.real("pressure_Pa");
-  out.factor = std::make_shared<Factor>(scene, entry, e.what());
+  out.factor = std::make_shared<Factor>(scene, entry, "boundary", e.what());
   if (kind == "inflow" && out.profile != "given") {
     if ((out.speed != 0) + (out.mean != 0) + (out.flow_mm3 != 0) != 1)
       e.fail(fmt::format("profile {} needs one of speed_mm_per_s, mean_speed_mm_per_s, flow_mL_per_s",
@@ -177,26 +127,18 @@ Sides::Entry Sides::read(const Case& scene, const Case& entry) const {
   for (const char* key :
        {"pressure_Pa", "resistance_Pa_s_per_mL", "compliance_mL_per_Pa", "characteristic_Pa_s_per_mL"})
     if (e.is_set(key) && kind != "outflow") e.fail(fmt::format("{} is for outflow", key));
-  const double resistance = e.real("resistance_Pa_s_per_mL") / units::mm3_per_mL;
-  const double compliance = e.real("compliance_mL_per_Pa") * units::mm3_per_mL;
-  if (compliance > 0) {
-    if (!(resistance > 0)) e.fail("compliance_mL_per_Pa needs a resistance_Pa_s_per_mL");
-    out.windkessel = circulation::WindkesselParameters{
-        e.real("characteristic_Pa_s_per_mL") / units::mm3_per_mL, resistance, compliance};
-  } else {
-    out.resistance = resistance;
-  }
   return out;
 }
 
 bool Sides::has_outflow() const {
-  return !outlets_.empty();
+  return !outlets_.empty() || openings_.have_known_pressure();
 }
 
 fluid::Boundaries Sides::boundaries() const {
   fluid::Boundaries out;
   for (int axis = 0; axis < 3; ++axis) {
-    for (int side = 0; side < 2; ++side) out.side[frame_.solver_axis(axis)][side] = kind_[axis][side];
+    for (int side = 0; side < 2; ++side)
+      out.side[frame_.solver_axis(axis)][side] = cut_[axis][side] < 0 ? kind_[axis][side] : Side::slip;
   }
   return out;
 }
@@ -287,18 +229,22 @@ void Sides::set(fluid::Flow& flow, double time_s) {
   }
   if (!has_outflow()) balance(flow);
   for (const Outlet& outlet : outlets_)
-    flow.set_end_pressure(outlet.end == 0 ? fluid::End::low : fluid::End::high,
-                          outlet.terminal ? outlet.terminal->pressure()
-                                          : outlet.entry->pressure * (*outlet.entry->factor)(time_s));
+    flow.set_end_pressure(outlet.end == 0 ? fluid::End::low : fluid::End::high, outlet.pressure.at(time_s));
+  openings_.set(flow, time_s);
 }
 
 void Sides::advance(fluid::Flow& flow, double time_s, double dt_s) {
-  for (Outlet& outlet : outlets_)
-    if (outlet.terminal) outlet.terminal->advance(time_s, dt_s, flow.outflow(2, outlet.end));
+  for (Outlet& outlet : outlets_) outlet.pressure.advance(time_s, dt_s, flow.outflow(2, outlet.end));
+  openings_.advance(flow, time_s, dt_s);
+}
+
+double Sides::side_flow(const fluid::Flow& flow, const SideOfBox& side) const {
+  const int opening = cut_[side.axis][side.side];
+  return opening < 0 ? flow.outflow(frame_.solver_axis(side.axis), side.side) : openings_.outflow(flow, opening);
 }
 
 double Sides::largest_speed(const fluid::Flow& flow) const {
-  double largest = 0;
+  double largest = openings_.largest_speed(flow);
   for (int axis = 0; axis < 3; ++axis) {
     for (int side = 0; side < 2; ++side) {
       const fluid::SideVelocity& given = flow.boundaries().inflow[axis][side];
@@ -319,24 +265,18 @@ double Sides::largest_speed(const fluid::Flow& flow) const {
 std::vector<double> Sides::save() const {
   std::vector<double> all;
   for (const Outlet& outlet : outlets_) {
-    if (!outlet.terminal) continue;
-    const auto one = outlet.terminal->save();
+    const auto one = outlet.pressure.save();
     all.insert(all.end(), one.begin(), one.end());
   }
+  const auto of_openings = openings_.save();
+  all.insert(all.end(), of_openings.begin(), of_openings.end());
   return all;
 }
 
 void Sides::restore(const std::vector<double>& saved) {
   std::size_t at = 0;
-  for (Outlet& outlet : outlets_) {
-    if (!outlet.terminal) continue;
-    const std::size_t count = outlet.terminal->save().size();
-    if (at + count > saved.size())
-      throw InputError("the state does not hold what stands behind the outflow sides; start anew");
-    outlet.terminal->restore(
-        {saved.begin() + static_cast<long>(at), saved.begin() + static_cast<long>(at + count)});
-    at += count;
-  }
+  for (Outlet& outlet : outlets_) outlet.pressure.restore(saved, at);
+  openings_.restore(saved, at);
 }
 
 }  // namespace valsalva::flow_scene

@@ -1,4 +1,6 @@
-// The six sides of the box: [[boundary]] as the flow's boundaries, and what they prescribe over time.
+// The six sides of the box: [[boundary]] as the flow's boundaries, and what they prescribe over time; with the
+// openings inside the box. Outflow sides of one axis are the flow's open sides; those of further axes become
+// openings, for which the box is some cells longer there.
 #pragma once
 
 #include <memory>
@@ -6,10 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "circulation/windkessel.hpp"
 #include "core/case.hpp"
 #include "flow_scene/expression.hpp"
 #include "flow_scene/frame.hpp"
+#include "flow_scene/openings.hpp"
+#include "flow_scene/prescribed.hpp"
 #include "fluid/flow.hpp"
 
 namespace valsalva::flow_scene {
@@ -20,18 +23,6 @@ struct SideOfBox {
 };
 /// Of "x_low" and so on; InputError with `what`.
 SideOfBox side_from(const std::string& name, const std::string& what);
-
-/// A factor over time: a table (in the file or beside it), an expression, or 1.
-class Factor {
- public:
-  Factor(const Case& scene, const Case& entry, const std::string& what);
-  double operator()(double time_s) const;
-
- private:
-  std::vector<double> time_, value_;
-  double period_s_ = 0;
-  std::optional<Expression> expression_;
-};
 
 class Sides {
  public:
@@ -54,6 +45,14 @@ class Sides {
     return velocity.changes() || velocity.varies() || !velocity(Vec3::Zero(), 0).isZero();
   }
   bool has_outflow() const;
+  /// Is the pressure to be that of the fluid's cells alone (fluid/krylov_pressure.hpp)?
+  bool fluid_cells() const { return fluid_cells_; }
+  /// Cells by which the box is longer than the case says.
+  int more_cells(int case_axis, int side) const { return cut_[case_axis][side] < 0 ? 0 : fluid::ghosts; }
+  Openings& openings() { return openings_; }
+  const Openings& openings() const { return openings_; }
+  /// Out of the box through a side, mm3/s (collective).
+  double side_flow(const fluid::Flow& flow, const SideOfBox& side) const;
   /// In the solver's axes.
   fluid::Boundaries boundaries() const;
 
@@ -76,15 +75,12 @@ class Sides {
     std::shared_ptr<VectorExpression> velocity;
     std::string profile = "given";
     Vec3 centre = Vec3::Zero();
-    double radius = 0, speed = 0, mean = 0, flow_mm3 = 0, pressure = 0;
+    double radius = 0, speed = 0, mean = 0, flow_mm3 = 0;
     std::shared_ptr<Factor> factor;
-    std::optional<circulation::WindkesselParameters> windkessel;
-    double resistance = 0;  ///< Pa s/mm3, without compliance
   };
   struct Outlet {
     int end = 0;
-    const Entry* entry = nullptr;
-    std::unique_ptr<circulation::Terminal> terminal;  ///< none: the pressure is prescribed
+    KnownPressure pressure;
   };
   Entry read(const Case& scene, const Case& entry) const;
   void set_inflow(fluid::Flow& flow, const Entry& entry, const SideOfBox& side, double time_s) const;
@@ -93,6 +89,9 @@ class Sides {
   std::vector<Entry> entries_;
   std::array<std::array<fluid::Side, 2>, 3> kind_{};  ///< in the axes of the case
   std::array<std::array<int, 2>, 3> entry_of_{};      ///< -1: none
+  std::array<std::array<int, 2>, 3> cut_{};           ///< side as an opening; -1: not
+  Openings openings_;
+  bool fluid_cells_ = false;
   Frame frame_;
   std::vector<Outlet> outlets_;
 };

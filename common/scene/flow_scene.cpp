@@ -72,14 +72,39 @@ void declare_obstacle(Schema& schema) {
                "A point of it, moving with displacement");
 }
 
+void declare_opening(Schema& schema) {
+  schema.tables("opening", "Where a plane cuts a vessel open inside the fluid's box");
+  schema.text("opening.name", "", "Its name");
+  schema.reals("opening.centre_mm", {0, 0, 0}, 3, unlimited(), "A point of the plane, in the vessel's middle");
+  schema.reals("opening.normal", {0, 0, 1}, 3, unlimited(), "Normal of the plane, out of the fluid");
+  schema.real("opening.radius_mm", 0, not_negative(),
+              "The plane cuts within this of centre_mm; across the whole vessel, and no other one");
+  schema.choice("opening.kind", "pressure", {"pressure", "flow"}, "What is known there");
+  schema.real("opening.pressure_Pa", 0, unlimited(),
+              "pressure: at factor 1; behind a resistance: that of its far end");
+  schema.real("opening.flow_mL_per_s", 0, unlimited(), "flow: into the fluid, at factor 1; exact on the grid");
+  schema.choice("opening.profile", "uniform", {"uniform", "parabola"},
+                "flow: even, or that of developed flow over the section, whatever its shape");
+  schema.reals("opening.time_s", {}, 0, not_negative(), "Times of the factor table, ascending");
+  schema.reals("opening.factor", {}, 0, unlimited(), "Its values; linear between them");
+  schema.text("opening.factor_file", "", "The table as two columns, time_s and factor (.csv)");
+  schema.text("opening.factor_of_t", "", "Or an expression of t");
+  schema.real("opening.period_s", 0, not_negative(), "Period after which the table begins anew; 0: none");
+  schema.real("opening.resistance_Pa_s_per_mL", 0, not_negative(),
+              "pressure: resistance behind the opening (with a compliance: the peripheral one)");
+  schema.real("opening.characteristic_Pa_s_per_mL", 0, not_negative(),
+              "pressure, with a compliance: resistance before it");
+  schema.real("opening.compliance_mL_per_Pa", 0, not_negative(), "pressure: compliance of a Windkessel");
+}
+
 void declare_flow_probe(Schema& schema) {
   schema.tables("flow_probe", "Columns of history.csv and metrics of summary.json of a scene of fluid");
   schema.text("flow_probe.name", "", "Its name");
   schema.choice(
       "flow_probe.quantity", "velocity",
-      {"velocity", "pressure", "profile", "flow", "section_pressure", "side_flow", "force", "moment",
+      {"velocity", "pressure", "profile", "flow", "section_pressure", "side_flow", "opening_flow", "opening_pressure", "force", "moment",
        "wall_shear_stress", "momentum", "kinetic_energy", "dissipation", "enstrophy", "divergence", "velocity_error",
-       "pressure_error", "step"},
+       "pressure_error", "step", "pressure_iterations"},
       "At a point; along a line (own file); through a section or a side; on an obstacle; of the whole "
       "box; against exact expressions");
   schema.choice("flow_probe.component", "all", {"all", "x", "y", "z", "magnitude"},

@@ -28,6 +28,7 @@ void declare_all(Schema& schema) {
   declare_coupling(schema);
   declare_boundary(schema);
   declare_obstacle(schema);
+  declare_opening(schema);
   declare_flow_probe(schema);
   declare_test_section(schema);
 }

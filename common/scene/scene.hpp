@@ -33,6 +33,7 @@ void declare_probe(Schema& schema);
 void declare_coupling(Schema& schema);
 void declare_boundary(Schema& schema);
 void declare_obstacle(Schema& schema);
+void declare_opening(Schema& schema);
 void declare_flow_probe(Schema& schema);
 void declare_test_section(Schema& schema);
 
