@@ -251,7 +251,11 @@ void FlowScene::step() {
   if (bodies_) return step_with_bodies();
   const double row_s = end_s_ * static_cast<double>(row_ + 1) / static_cast<double>(rows_);
   const double remaining = row_s - time_s_, most = next_step_s();
-  const double count = std::max(1.0, std::ceil(remaining / most - 1e-9));
+  double count = std::max(1.0, std::ceil(remaining / most - 1e-9));
+  // Growth by 1.2 may round to none: then one step less to the row, if that is stable.
+  if (given_step_s_ == 0 && count > 1 && remaining < (1 + 1e-9) * count * step_s_ &&
+      remaining <= (count - 1) * stable_s())
+    --count;
   const double dt = remaining / count, start = time_s_;
   set_force(start + 0.5 * dt);
   fluid::StepReport report;

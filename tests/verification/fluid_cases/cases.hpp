@@ -42,12 +42,4 @@ struct Dissipation {
 };
 Dissipation taylor_green(int n, double end, const FlowParameters& scheme);
 
-/// FDA nozzle, sudden-expansion side, at throat Reynolds number 500 or 3500, cells of h mm, SI output.
-struct Nozzle {
-  std::vector<double> z, axis_velocity, wall_pressure;  ///< at the laboratories' stations (velocity)
-  int inside_velocity = 0, stations_velocity = 0;  ///< within two standard deviations of the laboratories
-  int inside_pressure = 0, stations_pressure = 0;
-};
-Nozzle nozzle(int reynolds, double h, double end, Wall wall, double vreman);
-
 }  // namespace valsalva::fluid

@@ -4,7 +4,6 @@
 //   study_fluid cylinder N END [wall]
 //   study_fluid sphere RE CELLS_A_DIAMETER WIDTH END [wall]
 //   study_fluid taylor-green N END scheme     upwind3, centred2, upwind3+vreman, conserving4, ...
-//   study_fluid nozzle 500|3500 H_MM END [wall] [vreman]
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -52,19 +51,9 @@ int main(int argc, char** argv) {
       std::printf("peak %.5f at t = %.2f; difference from the reference %.3f of its mean\n", r.peak,
                   r.peak_time, r.rms);
     }
-  } else if (name == "nozzle" && words.size() >= 4) {
-    const Nozzle r = nozzle(static_cast<int>(number(1)), number(2), number(3),
-                            wall_from(word(4, "interpolated")), number(5));
-    if (speaks) {
-      for (std::size_t i = 0; i < r.z.size(); ++i)
-        std::printf("z = %.1f mm: velocity on the axis %.4f m/s\n", r.z[i], r.axis_velocity[i]);
-      for (double pressure : r.wall_pressure) std::printf("wall pressure %.2f Pa\n", pressure);
-      std::printf("inside two standard deviations: velocity %d of %d stations, pressure %d of %d\n",
-                  r.inside_velocity, r.stations_velocity, r.inside_pressure, r.stations_pressure);
-    }
   } else {
     std::fprintf(stderr,
-                 "usage: study_fluid cavity|cylinder|sphere|taylor-green|nozzle ...; see study.cpp\n");
+                 "usage: study_fluid cavity|cylinder|sphere|taylor-green ...; see study.cpp\n");
     return 2;
   }
 }
