@@ -2,7 +2,8 @@
 
     make cohort COHORT=pipelines/cohorts/leaflet-flutter-2022.csv
     /usr/bin/python3 pipelines/reproduce_flow.py pipelines/cohorts/leaflet-flutter-2022.csv --window 0.1,0.3 \\
-        [--start 0.03] [--planes -1,13] [--band 30,200] [--times 0.23,0.24,0.25,0.26] [--pictures docs/pictures/x]
+        [--start 0.03] [--planes -1,13] [--band 30,200] [--times 0.23,0.24,0.25,0.26] [--columns q_mL_per_s] [--flow] \\
+        [--pictures docs/pictures/x]
 
 Reads history.csv and the frames in the newest state of each case's cycle. Times are those of the beat, which begins at
 --start (cycle.initialisation_s). Prints Markdown:
@@ -16,8 +17,9 @@ Reads history.csv and the frames in the newest state of each case's cycle. Times
             of the window swings against the first (growth: above 1 it builds up)
   strain    largest principal Green-Lagrange strain of the middle surface beside the tip of leaflet 1, mean over the window
 
-A case that was not run is said to be missing. --pictures PREFIX: PREFIX-course.png (courses and spectra) and
-PREFIX-edges.png (free edges from above at --times).
+A case that was not run is said to be missing. --pictures PREFIX: PREFIX-course.png (courses and spectra),
+PREFIX-edges.png (free edges from above at --times), with --columns a,b PREFIX-beat.png (these columns of history.csv),
+with --flow PREFIX-flow.png (axial velocity in the plane y = 0 at --times, the leaflets' nodes near it).
 """
 
 import argparse
@@ -182,19 +184,32 @@ def draw(runs, options):
 
     names = list(signals(next(iter(runs.values())), options))
     figure, axes = pyplot.subplots(len(names), 2, figsize=(11, 2.8 * len(names)), squeeze=False)
-    for case, run in runs.items():
+    for number, (case, run) in enumerate(runs.items()):
+        colour = f"C{number}"
         for row, (name, (t, values)) in enumerate(signals(run, options).items()):
-            axes[row][0].plot(t, values, lw=0.9, label=case)
+            axes[row][0].plot(t, values, lw=0.9, color=colour, label=case)
             axes[row][0].set_ylabel(name)
             if t[-1] >= options.window[1] - 0.01:
                 f, a, _ = spectrum(t, values, options.window)
-                axes[row][1].plot(f, a, lw=0.9, label=case)
+                axes[row][1].plot(f, a, lw=0.9, color=colour, label=case)
             axes[row][1].set_xlim(0, options.band[1])
     axes[0][0].legend(fontsize=7)
     axes[-1][0].set_xlabel("time in the beat, s")
     axes[-1][1].set_xlabel(f"frequency, Hz, of {options.window[0]} to {options.window[1]} s")
     figure.tight_layout()
     figure.savefig(f"{options.pictures}-course.png", dpi=110)
+
+    columns = [name for name in options.columns.split(",") if name]
+    if columns:
+        figure, axes = pyplot.subplots(len(columns), 1, figsize=(7, 2 * len(columns)), sharex=True, squeeze=False)
+        for case, run in runs.items():
+            for (axis,), name in zip(axes, columns):
+                axis.plot(run.time_s, run.column(name), lw=0.9, label=case)
+                axis.set_ylabel(name, fontsize=8)
+        axes[0][0].legend(fontsize=7)
+        axes[-1][0].set_xlabel("time in the beat, s")
+        figure.tight_layout()
+        figure.savefig(f"{options.pictures}-beat.png", dpi=110)
 
     drawn = {case: run for case, run in runs.items() if run.frames is not None}
     if not drawn or not options.times:
@@ -215,6 +230,24 @@ def draw(runs, options):
             axis.add_collection(LineCollection(run.free_edges(frame), lw=1.2, colors="tab:red"))
     figure.tight_layout()
     figure.savefig(f"{options.pictures}-edges.png", dpi=110)
+    if not options.flow:
+        return
+    fastest = max(np.abs(run.velocity[..., 2]).max() for run in drawn.values()) / 1000
+    figure, axes = pyplot.subplots(len(drawn), len(options.times), figsize=(1.5 * len(options.times), 4 * len(drawn)), squeeze=False)
+    for row, (case, run) in zip(axes, drawn.items()):
+        x, z = (run.origin[d] + run.spacing[d] * np.array([-0.5, n - 0.5]) for d, n in ((0, run.velocity.shape[2]), (2, run.velocity.shape[1])))
+        for axis, time_s in zip(row, options.times):
+            axis.set_axis_off()
+            axis.set_title(f"{case}, {time_s:g} s", fontsize=7)
+            if run.frames[-1] < time_s - 0.01:
+                continue
+            frame = int(np.argmin(np.abs(run.frames - time_s)))
+            axis.imshow(run.velocity[frame, :, :, 2] / 1000, origin="lower", extent=(*x, *z), cmap="RdBu_r", vmin=-fastest, vmax=fastest)
+            near = np.abs(run.points[frame][:, 1]) < 0.6
+            axis.plot(*run.points[frame][near][:, [0, 2]].T, ".", ms=1.2, color="k")
+    figure.suptitle(f"axial velocity in the plane y = 0, red forward, to {fastest:.1f} m/s", fontsize=8)
+    figure.tight_layout()
+    figure.savefig(f"{options.pictures}-flow.png", dpi=110)
 
 
 def numbers(words):
@@ -230,6 +263,8 @@ def main():
     parser.add_argument("--planes", type=numbers, default=(-1.0, 13.0))
     parser.add_argument("--band", type=numbers, default=(30.0, 200.0))
     parser.add_argument("--times", type=numbers, default=())
+    parser.add_argument("--columns", default="")
+    parser.add_argument("--flow", action="store_true")
     parser.add_argument("--pictures")
     options = parser.parse_args()
     with open(options.cohort, newline="") as file:

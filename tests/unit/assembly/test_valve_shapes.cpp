@@ -53,6 +53,33 @@ TEST(ValveShapes, TheLeafletHangsOnTheTubeAndTheCrownEndsThere) {
   EXPECT_NEAR(std::atan2(tip.y(), tip.x()), -half, 1e-9);
 }
 
+TEST(ValveShapes, TheFreeEdgeCanFollowTheTubeAndIsLongerThen) {
+  ValveShape v = sample();
+  const auto edge = [&] {
+    const BodyMesh leaflet = sheet(leaflet_map(upright, v, {-1, 1}), {64, 8}, Pattern::alternating);
+    Points x;
+    for (int a : leaflet.groups.at("end2")) x.push_back(leaflet.points[a] - upright.origin);
+    return x;
+  };
+  const auto length = [](const Points& x) {
+    double sum = 0;
+    for (std::size_t i = 1; i < x.size(); ++i) sum += (x[i] - x[i - 1]).head<2>().norm();
+    return sum;
+  };
+  const double bowed = length(edge());
+  v.edge_exponent = 2;
+  const Points x = edge();
+  EXPECT_GT(length(x), 1.02 * bowed);
+  for (const Vec3& p : x) {
+    const double s = std::atan2(p.y(), p.x()) / (57 * M_PI / 180);
+    EXPECT_NEAR(p.head<2>().norm(), 12 - 9.5 * std::pow(std::cos(0.5 * M_PI * s), 2), 1e-6);
+  }
+  v.gap = 9;
+  check_valve(v, "beyond the chord");
+  v.gap = 12.1;
+  test::expect_error(ExitCode::input, {"gap is 12.1", "12 mm"}, [&] { check_valve(v, "x"); });
+}
+
 // Twice the area over the longest side squared: 0.87 for an equilateral triangle. The worst lie where two
 // sides of the patch meet in a straight line.
 TEST(ValveShapes, ElementsKeepTheirShapeIntoTheCommissures) {

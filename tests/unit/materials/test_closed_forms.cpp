@@ -9,6 +9,8 @@
 // Exponents stay below 6, where the plain exponential holds.
 #include <gtest/gtest.h>
 
+#include "core/errors.hpp"
+#include "materials/lee_sacks.hpp"
 #include "materials/sheet_test.hpp"
 #include "samples.hpp"
 
@@ -87,6 +89,18 @@ TEST(ClosedForms, LeeSacksWithoutFibres) {
   check_isotropic(
       *make_law("lee-sacks", {{"c0_Pa", 6e4}, {"c1_Pa", 1e4}, {"c2", 3}, {"w", 1}}),
       [](double i1) { return 3e4 + 1e4 * 3 * (i1 - 3) * std::exp(3 * square(i1 - 3)); }, 0, 6e4);
+}
+
+TEST(ClosedForms, LeeSacksWithoutFibresIsALawOfEvenlyDispersedFibres) {
+  const LeeSacksParameters p{6e4, 1e4, 3, 1, 1};
+  const LeeSacks law(p);
+  const Hgo same(as_hgo(p));
+  for (const double l : stretches)
+    EXPECT_NEAR(uniaxial(same, l, fibres_at({20})).cauchy_Pa(0, 0), uniaxial(law, l).cauchy_Pa(0, 0),
+                1e-3 * std::abs(uniaxial(law, l).cauchy_Pa(0, 0)))
+        << l;
+  EXPECT_NEAR(same.matrix_modulus_Pa(), 3 * p.c0_Pa, 1e-9 * p.c0_Pa);
+  EXPECT_THROW(as_hgo({6e4, 1e4, 3, 1, 0.9}), InputError);
 }
 
 TEST(ClosedForms, Ogden) {
