@@ -13,8 +13,8 @@ option(VALSALVA_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
 
 add_library(valsalva_options INTERFACE)
 target_include_directories(valsalva_options INTERFACE ${CMAKE_SOURCE_DIR}/common)
-# GCC 12 warns inside its own AVX-512 headers (its bug 105593), hence no maybe-uninitialized.
-target_compile_options(valsalva_options INTERFACE -Wall -Wextra -Wno-maybe-uninitialized -fno-math-errno -fno-trapping-math)
+# GCC 12 warns inside its own AVX-512 headers (its bug 105593), hence no (maybe-)uninitialized.
+target_compile_options(valsalva_options INTERFACE -Wall -Wextra -Wno-maybe-uninitialized -Wno-uninitialized -fno-math-errno -fno-trapping-math)
 if(VALSALVA_NATIVE)
   target_compile_options(valsalva_options INTERFACE -march=native)
 endif()

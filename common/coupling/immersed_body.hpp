@@ -22,6 +22,12 @@ struct EdgeStretch {
   double change = 0;   ///< largest relative change of an edge's length since the positions given
 };
 
+/// Share of the step by which forces run ahead of the positions: what it damps and costs is in stability.hpp.
+inline constexpr double step_lead = 0.25;
+
+/// Of fibres at the strains of a closed leaflet.
+inline constexpr double stiffening_per_strain = 100;
+
 class ImmersedBody {
  public:
   ImmersedBody() = default;
@@ -42,8 +48,11 @@ class ImmersedBody {
   /// Mass (g) or inertia (g mm2) of the further unknowns.
   virtual std::vector<double> own_masses() const { return {}; }
 
-  /// Before the forces of a step of (at most) dt: history.
-  virtual void begin_step(double /*dt_s*/) {}
+  /// Before the forces of a step of (at most) dt: history. last_velocity: of the unknowns in the step before.
+  virtual void begin_step(double /*dt_s*/, const Points& /*last_velocity*/) {}
+  /// a: forces are those of the shape that lies a dt ahead along last_velocity. Above 0 the limit of the step
+  /// counts the fluid's incompressibility (stability.hpp).
+  virtual double lead() const = 0;
   /// Force (moment) on every unknown, uN (uN mm); zero at held ones (collective).
   virtual void forces(Points& out) = 0;
   /// The tangent at the present shape; then out = K direction, of all unknowns (collective). For the
@@ -58,8 +67,9 @@ class ImmersedBody {
   virtual EdgeStretch edge_stretch(const Points& since) const = 0;
   /// The share of the motion dt velocity, above 0 and up to 1, in which nothing passes through anything.
   virtual double allowed_share(const Points& /*velocity*/, double /*dt_s*/) const { return 1; }
-  /// Has something (contact) become much stiffer since update_tangent()?
-  virtual bool stiffened() const { return false; }
+  /// An upper estimate of how many times as stiff the body has become since update_tangent(), whose edges
+  /// have been strained by `strain` since then.
+  virtual double stiffening(double strain) const { return 1 + stiffening_per_strain * strain; }
 
   /// Beside the nodes' positions: what a bitwise continuation needs, by names below "coupling/body/".
   virtual std::map<std::string, state::Array> save() const { return {}; }

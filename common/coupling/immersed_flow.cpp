@@ -1,6 +1,7 @@
 #include "coupling/immersed_flow.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/errors.hpp"
@@ -61,17 +62,19 @@ double ImmersedFlow::find_critical() {
   if (!body_) return std::numeric_limits<double>::infinity();
   locate();
   iterate(settings_.first_iterations);
-  return power_.critical_step();
+  return critical_step();
 }
 
 void ImmersedFlow::iterate(int iterations) {
   body_->update_tangent();
   const double per_density = 1 / flow_.parameters().density;
   const std::vector<double> own = body_->own_masses();
+  const bool with_projection = body_->lead() > 0 && flow_.parameters().order == 2;
   const Operator stiffness = [&](const Points& y, Points& f) { body_->tangent_product(y, f); };
   const Operator mobility = [&](const Points& f, Points& v) {
     scratch_.fill(0);
     spread(f, scratch_);
+    if (with_projection) flow_.constrain(scratch_);
     interpolate(scratch_, v);
     for (Vec3& each : v) each *= per_density;
     for (std::size_t i = 0; i < own.size(); ++i) v.push_back(f[f.size() - own.size() + i] / own[i]);
@@ -80,7 +83,12 @@ void ImmersedFlow::iterate(int iterations) {
   if (steps_ > 0) power_.look_along(change_, stiffness, mobility, settings_.look_iterations);
 }
 
+double ImmersedFlow::critical_step() const {
+  return power_.critical_step() / std::sqrt(1 + 2 * body_->lead());
+}
+
 double ImmersedFlow::plan(double at_most) {
+  double stiffening = 1;
   if (body_) {
     locate();
     const EdgeStretch stretch = body_->edge_stretch(probed_x_);
@@ -88,16 +96,24 @@ double ImmersedFlow::plan(double at_most) {
       throw NumericalFailure(
           "coupling: an edge of the structure is {:.3g} times as long as in its stress-free shape",
           stretch.largest);
+    stiffening = body_->stiffening(stretch.change);
     if (steps_ == 0 || steps_ - probed_ >= settings_.probe_interval ||
-        stretch.change > settings_.probe_strain || body_->stiffened())
+        stiffening > settings_.probe_stiffening) {
       probe();
+      stiffening = 1;
+    }
   }
   StepLimits limits = settings_.limits;
   limits.safety *= caution_;
   limits.cfl *= caution_;
-  const double critical = body_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
+  if (body_ && body_->lead() == 0) limits.convection = 0;  // without the projection there is room enough
+  const double critical = body_ ? critical_step() / std::sqrt(std::max(1.0, stiffening))
+                                : std::numeric_limits<double>::infinity();
   limits.cfl *= planned_share;
-  return std::min(at_most, next_step(limits, critical, max_speed_, flow_.grid().h, last_dt_));
+  const double dt = next_step(limits, critical, max_speed_, flow_.grid().h, last_dt_);
+  // What is left is halved rather than leave a last step by round-off alone, from which the next could not
+  // grow.
+  return at_most <= dt ? at_most : std::min(dt, 0.5 * at_most);
 }
 
 ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double dt)>& set_ends) {
@@ -114,7 +130,7 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
     flow_.clear_force();
   }
   if (body_) {
-    body_->begin_step(done.dt_s);
+    body_->begin_step(done.dt_s, last_velocity_);
     body_->forces(force_);
     spread(force_, flow_.force());
   }
@@ -138,7 +154,7 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
           done.fluid.cfl <= limit ? "bodies would pass through each other" : "the fluid is too fast",
           done.fluid.cfl);
   }
-  done.critical_s = body_ ? power_.critical_step() : std::numeric_limits<double>::infinity();
+  done.critical_s = body_ ? critical_step() : std::numeric_limits<double>::infinity();
   if (body_) {
     body_->move(velocity_, done.dt_s);
     for (std::size_t a = 0; a < velocity_.size(); ++a) change_[a] = velocity_[a] - last_velocity_[a];

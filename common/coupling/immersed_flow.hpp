@@ -26,13 +26,12 @@ struct ImmersedFlowSettings {
   Kernel kernel{Basis::ib4, Basis::ib4};
   Surroundings beyond{};  ///< sides up to which a body may reach (transfer.hpp)
   StepLimits limits;
-  int probe_interval = 8;        ///< steps between estimates of lambda_max
-  double probe_strain = 0.002;   ///< or sooner, once an edge has changed its length by this share: there the
-                                 ///< fibres' stiffness grows by a fifth
-  int probe_iterations = 2;      ///< power iterations each
-  int look_iterations = 3;       ///< along the nodes' last change of velocity
-  int first_iterations = 40;     ///< at the start, from a random direction
-  double largest_stretch = 1.6;  ///< alarm: an edge longer than this times its reference length
+  int probe_interval = 8;         ///< steps between estimates of lambda_max
+  double probe_stiffening = 1.2;  ///< or sooner, once the body may have become this many times as stiff
+  int probe_iterations = 2;       ///< power iterations each
+  int look_iterations = 3;        ///< along the nodes' last change of velocity
+  int first_iterations = 40;      ///< at the start, from a random direction
+  double largest_stretch = 1.6;   ///< alarm: an edge longer than this times its reference length
 };
 
 /// What the caller has to do with a step; each may be empty.
@@ -82,6 +81,7 @@ class ImmersedFlow {
  private:
   void probe();
   void iterate(int iterations);
+  double critical_step() const;
   double plan(double at_most);
   void locate();
   void spread(const Points& force, fluid::FaceField& density);

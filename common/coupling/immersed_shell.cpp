@@ -6,6 +6,7 @@
 
 #include "core/errors.hpp"
 #include "coupling/standoff.hpp"
+#include "materials/capped_exponential.hpp"
 
 namespace valsalva::coupling {
 
@@ -31,12 +32,14 @@ ImmersedShell::ImmersedShell(MPI_Comm comm, structure::Shell shell, Points rest,
       x_(std::move(start)),
       clamped_(std::move(clamped)) {
   VALSALVA_ASSERT(x_.size() == static_cast<std::size_t>(shell_.nodes()) && clamped_.size() == x_.size());
+  ahead_ = x_;
   moved();
 }
 
 void ImmersedShell::set_x(Points x) {
   VALSALVA_ASSERT(x.size() == x_.size());
   x_ = std::move(x);
+  ahead_ = x_;
   moved();
 }
 
@@ -53,10 +56,22 @@ void ImmersedShell::moved() {
   stand_off(standoff_, x_, normal, *pairs_, coupled_);
 }
 
+void ImmersedShell::begin_step(double dt, const Points& last_velocity) {
+  ahead_ = x_;
+  for (std::size_t a = 0; a < x_.size(); ++a)
+    if (!clamped_[a]) ahead_[a] += lead() * dt * last_velocity[a];
+}
+
 void ImmersedShell::forces(Points& out) {
   out.assign(x_.size(), Vec3::Zero());
-  shell_.add_forces(x_, out, 0, part_);
+  double exponent = 0;
+  shell_.add_forces(ahead_, out, 0, part_, &exponent);
   sum_over_ranks(comm_, part_.count, out);
+  if (part_.count > 1) exponent = mpi::max(comm_, exponent);
+  modulus_before_ = modulus_;
+  modulus_ = (1 + 2 * exponent) * materials::capped_exponential<double>(exponent).value;
+  if (tangent_is_new_) modulus_of_tangent_ = modulus_;
+  tangent_is_new_ = false;
   pull_.setZero();
   for (std::size_t a = 0; a < x_.size(); ++a)
     if (clamped_[a]) pull_ += out[a];
@@ -67,6 +82,7 @@ void ImmersedShell::forces(Points& out) {
 
 void ImmersedShell::update_tangent() {
   tangent_.update(x_);
+  tangent_is_new_ = true;
   Points ignored(x_.size(), Vec3::Zero());
   repulsion_.add_forces(x_, *pairs_, ignored);
 }
@@ -94,6 +110,31 @@ void ImmersedShell::move(Points& velocity, double dt) {
     x_[a] += dt * velocity[a];
   }
   moved();
+}
+
+double ImmersedShell::stiffening(double strain) const {
+  // d2W/de2 of the laws with exponentials grows like (1 + 2 Q) exp Q. The last forces are those of the step
+  // before.
+  const double growing = std::max(1.0, modulus_ / modulus_before_);
+  return std::max(modulus_ * growing / modulus_of_tangent_, 1 + 10 * strain);
+}
+
+std::map<std::string, state::Array> ImmersedShell::save() const {
+  std::map<std::string, state::Array> arrays;
+  arrays["coupling/body/modulus"] = state::Array::of(
+      std::vector<double>{modulus_, modulus_before_, modulus_of_tangent_, tangent_is_new_ ? 1.0 : 0.0});
+  return arrays;
+}
+
+void ImmersedShell::load(const state::State& state) {
+  const char* name = "coupling/body/modulus";
+  const std::vector<double>& values = state.array(name).doubles(name);
+  if (values.size() != 4)
+    throw InputError("{}: {} has {} entries, expected 4", state.source, name, values.size());
+  modulus_ = values[0];
+  modulus_before_ = values[1];
+  modulus_of_tangent_ = values[2];
+  tangent_is_new_ = values[3] != 0;
 }
 
 EdgeStretch ImmersedShell::edge_stretch(const Points& since) const {

@@ -34,6 +34,8 @@ class ImmersedShell : public ImmersedBody {
   bool clamped(std::size_t node) const { return clamped_[node] != 0; }
 
   /// Elastic force and repulsion on every node, uN; zero at clamped nodes (collective).
+  void begin_step(double dt_s, const Points& last_velocity) override;
+  double lead() const override { return step_lead; }
   void forces(Points& out) override;
   /// Force of the shell on what holds its clamped nodes, uN, at the last forces().
   const Vec3& pull_on_clamps() const { return pull_; }
@@ -49,6 +51,9 @@ class ImmersedShell : public ImmersedBody {
   /// x += dt u for free nodes. NumericalFailure when a node is not finite or faster than 2e4 mm/s.
   void move(Points& velocity, double dt) override;
   EdgeStretch edge_stretch(const Points& since) const override;
+  double stiffening(double strain) const override;
+  std::map<std::string, state::Array> save() const override;
+  void load(const state::State& state) override;
 
  private:
   void moved();
@@ -60,10 +65,14 @@ class ImmersedShell : public ImmersedBody {
   double standoff_;
   NearPairs near_;
   Repulsion repulsion_;
-  Points x_, coupled_;
+  Points x_, coupled_, ahead_;
   const std::vector<NearPair>* pairs_ = nullptr;  // of near_, at x_
   std::vector<std::uint8_t> clamped_;
   Vec3 pull_ = Vec3::Zero();
+  // The largest modulus of a law's exponential over its value at rest: with the last forces, those before,
+  // and the first after the tangent.
+  double modulus_ = 1, modulus_before_ = 1, modulus_of_tangent_ = 1;
+  bool tangent_is_new_ = false;
   mutable Points free_direction_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/errors.hpp"
 
@@ -97,6 +98,7 @@ ImmersedStructure::ImmersedStructure(structure::System& system,
     }
   }
   elastic_stiffness_ = *std::max_element(bound.translation.begin(), bound.translation.end());
+  ahead_ = system_->state;
   moved();
 }
 
@@ -107,10 +109,11 @@ double ImmersedStructure::abrupt_stiffness() const {
   return *std::max_element(bound.translation.begin(), bound.translation.end());
 }
 
-bool ImmersedStructure::stiffened() const {
+double ImmersedStructure::stiffening(double strain) const {
   constexpr double growth = 1.2, of_elastic = 0.1;
-  return !abrupt_.empty() &&
-         abrupt_stiffness() > growth * probed_stiffness_ + of_elastic * elastic_stiffness_;
+  if (!abrupt_.empty() && abrupt_stiffness() > growth * probed_stiffness_ + of_elastic * elastic_stiffness_)
+    return std::numeric_limits<double>::infinity();
+  return ImmersedBody::stiffening(strain);
 }
 
 double ImmersedStructure::allowed_share(const Points& velocity, double dt_s) const {
@@ -133,6 +136,7 @@ void ImmersedStructure::moved() {
 void ImmersedStructure::set_x(Points x) {
   VALSALVA_ASSERT(x.size() == system_->nodes());
   system_->state.x = std::move(x);
+  ahead_ = system_->state;
   moved();
 }
 
@@ -154,13 +158,15 @@ double ImmersedStructure::term_forces(const Configuration& at, Forces& out) cons
   return energy;
 }
 
-void ImmersedStructure::begin_step(double dt_s) {
+void ImmersedStructure::begin_step(double dt_s, const Points& last_velocity) {
   for (const auto& term : terms_) term->begin_step(system_->state, dt_s);
+  ahead_ = system_->state;
+  for (std::size_t a = 0; a < ahead_.x.size(); ++a) ahead_.x[a] += lead() * dt_s * last_velocity[a];
 }
 
 void ImmersedStructure::forces(Points& out) {
   const std::size_t nodes = system_->nodes();
-  stored_ = term_forces(system_->state, here_);
+  stored_ = term_forces(ahead_, here_);
   out = here_.force;
   out.resize(unknowns(), Vec3::Zero());
   const double square = settings_.tie_rate_per_s * settings_.tie_rate_per_s;

@@ -78,7 +78,12 @@ void PowerIteration::restore(Points direction, double eigenvalue) {
 }
 
 double next_step(const StepLimits& limits, double critical_s, double speed, double h, double last_s) {
-  double dt = std::min(limits.largest_s, limits.safety * critical_s);
+  double dt = limits.largest_s;
+  if (std::isfinite(critical_s)) {
+    // dt^2 = a^2 (1 - convection |u| dt / h)
+    const double a = limits.safety * critical_s, half = 0.5 * a * limits.convection * speed / h;
+    dt = std::min(dt, a * (std::sqrt(1 + half * half) - half));
+  }
   if (speed > 0) dt = std::min(dt, limits.cfl * h / speed);
   if (last_s > 0) dt = std::min(dt, limits.growth * last_s);
   if (!(dt >= limits.smallest_s) || std::isnan(critical_s) || std::isnan(speed))

@@ -39,6 +39,10 @@ void TurnedBody::set_x(Points x) {
   moved();
 }
 
+void TurnedBody::begin_step(double dt_s, const Points& last_velocity) {
+  body_->begin_step(dt_s, to_case(last_velocity));
+}
+
 void TurnedBody::forces(Points& out) {
   body_->forces(out);
   to_solver(out);

@@ -26,7 +26,8 @@ class TurnedBody : public coupling::ImmersedBody {
   const coupling::Sampling* sampling() const override { return &sampling_; }
   std::size_t unknowns() const override { return body_->unknowns(); }
   std::vector<double> own_masses() const override { return body_->own_masses(); }
-  void begin_step(double dt_s) override { body_->begin_step(dt_s); }
+  void begin_step(double dt_s, const Points& last_velocity) override;
+  double lead() const override { return body_->lead(); }
   void forces(Points& out) override;
   void update_tangent() override { body_->update_tangent(); }
   void tangent_product(const Points& direction, Points& out) const override;
@@ -34,7 +35,7 @@ class TurnedBody : public coupling::ImmersedBody {
   void move(Points& velocity, double dt_s) override;
   coupling::EdgeStretch edge_stretch(const Points& since) const override;
   double allowed_share(const Points& velocity, double dt_s) const override;
-  bool stiffened() const override { return body_->stiffened(); }
+  double stiffening(double strain) const override { return body_->stiffening(strain); }
   std::map<std::string, state::Array> save() const override { return body_->save(); }
   void load(const state::State& state) override { body_->load(state); }
 

@@ -304,7 +304,38 @@ std::array<const double*, 3> Flow::faces_of(int place, int k) const {
   return {velocity_[0].row(j, k) + i, velocity_[1].row(j, k) + i, velocity_[2].row(j, k) + i};
 }
 
-void Flow::fill_source(int k, double per_dt, double* plane) {
+void Flow::constrain(FaceField& velocity) {
+  VALSALVA_ASSERT(parameters_.order == 2);
+  solids_.still(velocity);
+  if (krylov_) return;
+  velocity_.swap(velocity);
+  exchange_planes(slab_, velocity_[2], 1);
+  poisson_->solve([&](int k, double* plane) { fill_source(k, 1, Given::nothing, plane); },
+                  [&](int k, const double* plane) { keep_correction(k, plane); });
+  fill_phi_ghosts(correction_, {0, 0});
+  const double factor = 1 / (parameters_.density * slab_.grid.h);
+  const std::array<std::ptrdiff_t, 3> stride{1, slab_.stride_y, slab_.stride_z};
+  for (int d = 0; d < 3; ++d) {
+    const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
+    for (int k = 0; k < planes; ++k)
+      for (int j = 0; j < slab_.grid.cells[1]; ++j) {
+        double* u = velocity_[d].row(j, k);
+        const double* phi = correction_.row(j, k);
+#pragma omp simd
+        for (int i = 0; i < slab_.grid.cells[0]; ++i) u[i] -= factor * (phi[i] - phi[i - stride[d]]);
+      }
+  }
+  velocity_.swap(velocity);
+}
+
+void Flow::keep_correction(int k, const double* plane) {
+  const int nx = slab_.grid.cells[0];
+  for (int j = 0; j < slab_.grid.cells[1]; ++j)
+    std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, correction_.row(j, k));
+}
+
+void Flow::fill_source(int k, double per_dt, Given through, double* plane) {
+  const double given = through == Given::velocity ? 1 : 0;
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const double factor = parameters_.density * per_dt / slab_.grid.h;
   const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
@@ -313,11 +344,11 @@ void Flow::fill_source(int k, double per_dt, double* plane) {
   if (boundaries_.periodic(1)) {
     std::copy_n(first_v, nx, end_v);
   } else {
-    for (int i = 0; i < nx; ++i) end_v[i] = boundaries_.inflow[1][1].at(1, i, k);
+    for (int i = 0; i < nx; ++i) end_v[i] = given * boundaries_.inflow[1][1].at(1, i, k);
   }
   for (int j = 0; j < ny; ++j) {
     double* u = velocity_[0].row(j, k);
-    u[nx] = boundaries_.periodic(0) ? u[0] : boundaries_.inflow[0][1].at(0, j, k);
+    u[nx] = boundaries_.periodic(0) ? u[0] : given * boundaries_.inflow[0][1].at(0, j, k);
     const double* v = velocity_[1].row(j, k);
     const double* w = velocity_[2].row(j, k);
     double* b = plane + static_cast<std::size_t>(j) * nx;
@@ -331,7 +362,6 @@ void Flow::fill_source(int k, double per_dt, double* plane) {
 
 StepReport Flow::project(double dt) {
   if (krylov_) return project_cells(dt);
-  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const bool fourth = parameters_.order == 4;
   // The exchange does not reach the highest face of a closed box, which belongs to its own slab.
   if (fourth) {
@@ -341,12 +371,9 @@ StepReport Flow::project(double dt) {
   }
   poisson_->solve(
       [&](int k, double* plane) {
-        fourth ? fill_source_fourth_order(k, 1 / dt, plane) : fill_source(k, 1 / dt, plane);
+        fourth ? fill_source_fourth_order(k, 1 / dt, plane) : fill_source(k, 1 / dt, Given::velocity, plane);
       },
-      [&](int k, const double* plane) {
-        for (int j = 0; j < ny; ++j)
-          std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, correction_.row(j, k));
-      });
+      [&](int k, const double* plane) { keep_correction(k, plane); });
   const std::array<double, 2> ends = keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_;
   fill_phi_ghosts(correction_, ends);
   const StepReport report = fourth ? correct_fourth_order(dt) : correct(dt);

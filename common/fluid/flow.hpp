@@ -160,6 +160,11 @@ class Flow {
   /// u += dt/rho * force density, between predict and project.
   void add_impulse(const FaceField& force, double dt);
   void penalise(double dt);
+  /// What solids and incompressibility leave of a velocity: zero at solid faces, then free of divergence with
+  /// no pressure at open ends and no flow through inflow sides; where the pressure is solved by
+  /// iterations (krylov) solid faces alone. Owned faces only. Not between predict and project; not of fourth
+  /// order.
+  void constrain(FaceField& velocity);
   /// NumericalFailure (on all ranks) that names the cell when the new velocity is not finite.
   StepReport project(double dt);
   StepReport step(double dt) {
@@ -236,7 +241,9 @@ class Flow {
   StepReport correct_fourth_order(double dt);
   /// The low faces of a cell of the local plane k.
   std::array<const double*, 3> faces_of(int place, int k) const;
-  void fill_source(int k, double per_dt, double* plane);
+  enum class Given { velocity, nothing };  ///< through inflow sides
+  void fill_source(int k, double per_dt, Given through, double* plane);
+  void keep_correction(int k, const double* plane);
   StepReport correct(double dt);
   StepReport report_of(double dt, double energy, double speed) const;
   [[noreturn]] void report_not_finite() const;

@@ -144,18 +144,14 @@ double Flow::largest_predicted() const {
 }
 
 StepReport Flow::project_cells(double dt) {
-  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   exchange_planes(slab_, velocity_[2], 1);
   krylov_->set_floor(krylov_->tolerance() * largest_predicted() * parameters_.density / (dt * slab_.grid.h));
   krylov_->solve(
       [&](int k, double* plane) {
-        fill_source(k, 1 / dt, plane);
+        fill_source(k, 1 / dt, Given::velocity, plane);
         if (!keep_pressure_) openings_->add_known_pressure(k, plane);
       },
-      [&](int k, const double* plane) {
-        for (int j = 0; j < ny; ++j)
-          std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, correction_.row(j, k));
-      });
+      [&](int k, const double* plane) { keep_correction(k, plane); });
   fill_phi_ghosts(correction_, keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_);
   const StepReport report = correct_cells(dt);
   if (!std::isfinite(report.kinetic_energy)) report_not_finite();

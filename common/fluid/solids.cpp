@@ -317,6 +317,16 @@ void Solids::penalise(double dt, double eta, const FaceField& last, FaceField& v
   }
 }
 
+void Solids::still(FaceField& velocity) {
+  prepare();
+  for (int d = 0; d < 3; ++d) {
+    double* u = velocity[d].data().data();
+    for (const Ghost& ghost : ghosts_[d]) u[ghost.index] = 0;
+    for (const Run& run : walls_[d]) std::fill_n(u + run.first, run.count, 0.0);
+    for (const Held& face : held_[d]) u[face.index] = 0;
+  }
+}
+
 void Solids::record(double eta, const FaceField& before, const FaceField& velocity) {
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   std::fill(moment_.begin(), moment_.end(), Vec3::Zero());

@@ -1,26 +1,24 @@
 // exp(Q), continued beyond Q = 6 by its second-order Taylor polynomial there: twice continuously
 // differentiable, and finite in unstable transients. In sound runs Q stays below 6;
-// `InvariantResponse::exponent` tells.
+// `InvariantResponse::exponent` tells. T: lanes.hpp.
 #pragma once
 
-#include <cmath>
+#include "materials/lanes.hpp"
 
 namespace valsalva::materials {
 
 inline constexpr double exponent_cap = 6.0;
 
+template <class T = double>
 struct CappedExponential {
-  double value, first, second;  ///< the function and its first two derivatives with respect to Q
+  T value, first, second;  ///< the function and its first two derivatives with respect to Q
 };
 
-inline CappedExponential capped_exponential(double q) {
-  if (q <= exponent_cap) {
-    const double e = std::exp(q);
-    return {e, e, e};
-  }
-  static const double at_cap = std::exp(exponent_cap);
-  const double d = q - exponent_cap;
-  return {at_cap * (1 + d + 0.5 * d * d), at_cap * (1 + d), at_cap};
+template <class T>
+CappedExponential<T> capped_exponential(const T& q) {
+  const T e = exponential(smaller(q, constant<T>(exponent_cap)));
+  const T beyond = larger(q - exponent_cap, constant<T>(0));
+  return {e * (1 + beyond * (1 + 0.5 * beyond)), e * (1 + beyond), e};
 }
 
 }  // namespace valsalva::materials

@@ -42,7 +42,7 @@ ElasticResponse Fung::respond(const Mat3& c, const Fibres& fibres, double factor
   const double on_e2 = p_.b1 + p_.b2 - 2 * p_.b3, on_row2 = 2 * (p_.b3 - p_.b2);
   const double q = on_e2 * e * e + on_row2 * row2 + p_.b2 * strain.squaredNorm();
   const Mat3 dq = 2 * on_e2 * e * along + on_row2 * m + 2 * p_.b2 * strain;
-  const CappedExponential x = capped_exponential(q);
+  const CappedExponential x = capped_exponential<double>(q);
   const double half = 0.5 * factor * p_.ch_Pa;
 
   ElasticResponse r;

@@ -38,9 +38,13 @@ class Hgo : public InvariantLaw {
   explicit Hgo(const HgoParameters& parameters);
   std::string name() const override { return "hgo"; }
   InvariantResponse derivatives(const Invariants& at, int families, double factor) const override;
+  InvariantResponseOf<Lanes> lane_derivatives(const InvariantsOf<Lanes>& at, int families,
+                                              const Lanes& factor) const override;
   double matrix_modulus_Pa() const { return 6 * p_.c10_Pa * p_.c01; }
 
  private:
+  template <class T>
+  InvariantResponseOf<T> of(const InvariantsOf<T>& at, int families, const T& factor) const;
   HgoParameters p_;
 };
 

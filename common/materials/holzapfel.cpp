@@ -18,7 +18,7 @@ InvariantResponse Holzapfel::derivatives(const Invariants& at, int families, dou
   r.energy = 0.5 * factor * p_.mu_Pa * (at.i1 - 3);
   r.d1 = 0.5 * factor * p_.mu_Pa;
   for (int i = 0; i < families; ++i) {
-    const FibreExponential w = fibre_exponential(p_.a_Pa[i], p_.b[i], at.i4[i] - 1);
+    const FibreExponential w = fibre_exponential<double>(p_.a_Pa[i], p_.b[i], at.i4[i] - 1);
     r.energy += w.energy;
     r.d4[i] = w.first;
     r.d44[i] = w.second;

@@ -85,6 +85,45 @@ PlaneStress InvariantLaw::plane_stress(const Eigen::Matrix2d& c, const PlaneFibr
   return stress_of(v, derivatives(v, fibres.count, factor), i1_gradient(v), fibres);
 }
 
+PlaneStressLanes InvariantLaw::plane_stress_lanes(const PlaneLanes& at) const {
+  const Lanes det = at.c11 * at.c22 - at.c12 * at.c12, trace = at.c11 + at.c22;
+  const auto [c33, slope] = thickness_stretch_lanes(det);
+  InvariantsOf<Lanes> v;
+  v.i1 = trace + c33;
+  v.i2 = det + trace * c33;
+  for (int i = 0; i < at.families; ++i) {
+    const auto& [a1, a2] = at.fibre[i];
+    v.i4[i] = a1 * a1 * at.c11 + 2 * a1 * a2 * at.c12 + a2 * a2 * at.c22;
+  }
+  const InvariantResponseOf<Lanes> w = lane_derivatives(v, at.families, at.factor);
+  // The cofactor of C is (c22, c11, -c12).
+  const Lanes on_one = 2 * (w.d1 + w.d2 * c33), on_cofactor = 2 * (w.d1 * slope + w.d2 * (1 + trace * slope));
+  PlaneStressLanes s{w.energy, w.exponent, on_one + on_cofactor * at.c22, on_one + on_cofactor * at.c11,
+                     -on_cofactor * at.c12};
+  for (int i = 0; i < at.families; ++i) {
+    const auto& [a1, a2] = at.fibre[i];
+    s.s11 += 2 * w.d4[i] * a1 * a1;
+    s.s22 += 2 * w.d4[i] * a2 * a2;
+    s.s12 += 2 * w.d4[i] * a1 * a2;
+  }
+  return s;
+}
+
+InvariantResponseOf<Lanes> InvariantLaw::lane_derivatives(const InvariantsOf<Lanes>& at, int families,
+                                                          const Lanes& factor) const {
+  InvariantResponseOf<Lanes> all;
+  for (int l = 0; l < lane_count; ++l) {
+    const InvariantResponse one =
+        derivatives({at.i1[l], at.i2[l], {at.i4[0][l], at.i4[1][l]}}, families, factor[l]);
+    all.energy[l] = one.energy;
+    all.exponent[l] = one.exponent;
+    all.d1[l] = one.d1;
+    all.d2[l] = one.d2;
+    for (int i = 0; i < families; ++i) all.d4[i][l] = one.d4[i];
+  }
+  return all;
+}
+
 PlaneTangent InvariantLaw::plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
                                          double factor) const {
   const PlaneInvariants v = invariants_of(c, fibres);

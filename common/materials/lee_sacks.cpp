@@ -24,14 +24,15 @@ LeeSacks::LeeSacks(const LeeSacksParameters& parameters) : p_(parameters) {
 InvariantResponse LeeSacks::derivatives(const Invariants& at, int families, double factor) const {
   // c1/2 exp(c x^2) is the squared exponential with k1 = c1 c.
   InvariantResponse r;
-  const FibreExponential matrix = squared_exponential(factor * p_.w * p_.c1_Pa * p_.c2, p_.c2, at.i1 - 3);
+  const FibreExponential matrix =
+      squared_exponential<double>(factor * p_.w * p_.c1_Pa * p_.c2, p_.c2, at.i1 - 3);
   r.energy = 0.5 * factor * p_.c0_Pa * (at.i1 - 3) + matrix.energy;
   r.d1 = 0.5 * factor * p_.c0_Pa + matrix.first;
   r.d11 = matrix.second;
   r.exponent = matrix.exponent;
   for (int i = 0; i < families; ++i) {
     const FibreExponential w =
-        fibre_exponential((1 - p_.w) * p_.c1_Pa * p_.c3 / families, p_.c3, at.i4[i] - 1);
+        fibre_exponential<double>((1 - p_.w) * p_.c1_Pa * p_.c3 / families, p_.c3, at.i4[i] - 1);
     r.energy += w.energy;
     r.d4[i] = w.first;
     r.d44[i] = w.second;

@@ -7,6 +7,8 @@
 #include <array>
 #include <string>
 
+#include "materials/lanes.hpp"
+
 namespace valsalva::materials {
 
 /// Unit fibre directions in the element's basis; count 0 to 2.
@@ -27,12 +29,27 @@ struct PlaneTangent {
   Eigen::Matrix3d tangent;  ///< dS/dE
 };
 
+/// Eight elements of one body side by side.
+struct PlaneLanes {
+  Lanes c11, c22, c12;
+  Lanes factor;
+  int families = 0;                             ///< as PlaneFibres::count
+  std::array<std::array<Lanes, 2>, 2> fibre{};  ///< components of each direction
+};
+
+struct PlaneStressLanes {
+  Lanes energy, exponent;
+  Lanes s11, s22, s12;
+};
+
 class PlaneLaw {
  public:
   virtual ~PlaneLaw() = default;
   virtual std::string name() const = 0;
   virtual PlaneStress plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
                                    double factor) const = 0;
+  /// Of eight elements: one after the other where a law has nothing faster.
+  virtual PlaneStressLanes plane_stress_lanes(const PlaneLanes& at) const;
   virtual PlaneTangent plane_tangent(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
                                      double factor) const = 0;
 };

@@ -29,6 +29,23 @@ PlaneStress stress_of(const Sheet& s) {
 
 }  // namespace
 
+PlaneStressLanes PlaneLaw::plane_stress_lanes(const PlaneLanes& at) const {
+  PlaneStressLanes all;
+  PlaneFibres fibres{.count = at.families};
+  for (int l = 0; l < lane_count; ++l) {
+    Eigen::Matrix2d c;
+    c << at.c11[l], at.c12[l], at.c12[l], at.c22[l];
+    for (int i = 0; i < at.families; ++i) fibres.direction[i] << at.fibre[i][0][l], at.fibre[i][1][l];
+    const PlaneStress one = plane_stress(c, fibres, at.factor[l]);
+    all.energy[l] = one.energy;
+    all.exponent[l] = one.exponent;
+    all.s11[l] = one.stress(0, 0);
+    all.s22[l] = one.stress(1, 1);
+    all.s12[l] = one.stress(0, 1);
+  }
+  return all;
+}
+
 PlaneStress ElasticLaw::plane_stress(const Eigen::Matrix2d& c, const PlaneFibres& fibres,
                                      double factor) const {
   return stress_of(sheet_of(*this, c, fibres, factor, Derivatives::stress));

@@ -16,7 +16,7 @@ StraightenedFibre::StraightenedFibre(const StraightenedFibreParameters& paramete
   const double straight = p_.straightening_stretch;
   if (std::isinf(straight)) return;
   require(straight > 1, law, "straightening stretch", straight, "a number above 1");
-  const CappedExponential e = capped_exponential(p_.c4 * (straight - 1));
+  const CappedExponential e = capped_exponential<double>(p_.c4 * (straight - 1));
   c5_ = p_.c5_Pa.value_or(p_.c3_Pa * p_.c4 * e.first);
   require_not_negative(law, "C5 (Pa)", c5_);
   c6_ = p_.c3_Pa * (e.value - 1) - c5_ * straight;
@@ -25,7 +25,7 @@ StraightenedFibre::StraightenedFibre(const StraightenedFibreParameters& paramete
 
 StraightenedFibre::Fibre StraightenedFibre::crimped(double l) const {
   const double c3 = p_.c3_Pa, c4 = p_.c4;
-  const CappedExponential e = capped_exponential(c4 * (l - 1));
+  const CappedExponential e = capped_exponential<double>(c4 * (l - 1));
   const auto exponential_energy = [&](double to) {
     return std::exp(-c4) * (std::expint(c4 * to) - std::expint(c4)) - std::log(to);
   };

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "materials/lanes.hpp"
+
 namespace valsalva::materials {
 
 inline constexpr double determinant_floor = 1e-4;
@@ -16,6 +18,16 @@ inline ThicknessStretch thickness_stretch(double det) {
   constexpr double f = determinant_floor;
   if (det < f) return {2 / f - det / (f * f), -1 / (f * f), 0};
   return {1 / det, -1 / (det * det), 2 / (det * det * det)};
+}
+
+struct ThicknessStretchLanes {
+  Lanes value, first;
+};
+
+inline ThicknessStretchLanes thickness_stretch_lanes(const Lanes& det) {
+  constexpr double f = determinant_floor;
+  const Lanes inverse = det.max(f).inverse();
+  return {if_above(det, f, inverse, 2 / f - det / (f * f)), -inverse * inverse};
 }
 
 /// Second derivative of det C = C11 C22 - C12 C21 in Voigt order 11, 22, 12.

@@ -13,6 +13,12 @@
 namespace valsalva::structure {
 namespace {
 
+constexpr int lanes = materials::lane_count;
+
+int groups_of(int count) {
+  return (count + lanes - 1) / lanes;
+}
+
 struct Range {
   int begin, end;
 };
@@ -28,6 +34,21 @@ Eigen::Matrix<double, 3, 2> deformation(const Vec3& x0, const Vec3& x1, const Ve
   Eigen::Matrix<double, 3, 2> edges;
   edges << x1 - x0, x2 - x0;
   return edges * inverse_edges;
+}
+
+using materials::Lanes;
+using LaneVector = std::array<Lanes, 3>;
+
+Lanes dot(const LaneVector& a, const LaneVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+LaneVector cross(const LaneVector& a, const LaneVector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+LaneVector difference(const LaneVector& a, const LaneVector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
 template <class Count>
@@ -59,6 +80,7 @@ Shell::Shell(ShellMesh mesh, std::shared_ptr<const materials::PlaneLaw> law, Ben
         bending.modulus_Pa, bending.poisson);
   build_elements();
   if (bending.modulus_Pa > 0) build_hinges(bending);
+  build_groups();
 }
 
 void Shell::build_elements() {
@@ -147,19 +169,61 @@ std::vector<double> Shell::lumped_mass(double density_g_per_mm3) const {
   return mass;
 }
 
-double Shell::element_forces(const Points& x, int offset, int e, std::array<Vec3, 3>& f) const {
-  const Triangle& t = mesh_.triangles[e];
-  const Element& element = elements_[e];
-  const auto gradient =
-      deformation(x[offset + t[0]], x[offset + t[1]], x[offset + t[2]], element.inverse_edges);
-  const Eigen::Matrix2d c = gradient.transpose() * gradient;
-  const materials::PlaneStress s = materials::plane_stress(*law_, c, element.fibres, element.factor);
-  const double volume = element.thickness * element.area;
-  const Eigen::Matrix<double, 3, 2> h = -volume * gradient * s.stress * element.inverse_edges.transpose();
-  f[1] = h.col(0);
-  f[2] = h.col(1);
-  f[0] = -(f[1] + f[2]);
-  return volume * s.energy;
+void Shell::build_groups() {
+  const auto each = [](int count, auto&& action) {
+    for (int i = 0; i < groups_of(count) * lanes; ++i) action(i / lanes, i % lanes, std::min(i, count - 1));
+  };
+  element_groups_.resize(groups_of(elements()));
+  each(elements(), [&](int g, int l, int e) {
+    const Element& element = elements_[e];
+    ElementGroup& group = element_groups_[g];
+    for (int r = 0; r < 2; ++r)
+      for (int c = 0; c < 2; ++c) {
+        group.inverse_edges[r][c][l] = element.inverse_edges(r, c);
+        group.fibre[r][c][l] = element.fibres.direction[r][c];
+      }
+    group.volume[l] = element.thickness * element.area;
+    group.factor[l] = element.factor;
+  });
+  hinge_groups_.resize(groups_of(hinges()));
+  each(hinges(), [&](int g, int l, int h) {
+    hinge_groups_[g].rest_angle[l] = hinges_[h].rest_angle;
+    hinge_groups_[g].stiffness[l] = hinges_[h].stiffness;
+  });
+}
+
+void Shell::element_forces(const Points& x, int offset, int g, GroupForces& out) const {
+  const ElementGroup& group = element_groups_[g];
+  LaneVector edge1, edge2;
+  for (int l = 0; l < lanes; ++l) {
+    const Triangle& t = mesh_.triangles[std::min(g * lanes + l, elements() - 1)];
+    const Vec3 &x0 = x[offset + t[0]], &x1 = x[offset + t[1]], &x2 = x[offset + t[2]];
+    for (int d = 0; d < 3; ++d) {
+      edge1[d][l] = x1[d] - x0[d];
+      edge2[d][l] = x2[d] - x0[d];
+    }
+  }
+  const auto& m = group.inverse_edges;
+  LaneVector f1, f2;  // columns of the deformation gradient
+  for (int d = 0; d < 3; ++d) {
+    f1[d] = edge1[d] * m[0][0] + edge2[d] * m[1][0];
+    f2[d] = edge1[d] * m[0][1] + edge2[d] * m[1][1];
+  }
+  const materials::PlaneStressLanes s = law_->plane_stress_lanes({.c11 = dot(f1, f1),
+                                                                  .c22 = dot(f2, f2),
+                                                                  .c12 = dot(f1, f2),
+                                                                  .factor = group.factor,
+                                                                  .families = elements_.front().fibres.count,
+                                                                  .fibre = group.fibre});
+  for (int d = 0; d < 3; ++d) {
+    const Lanes p1 = -group.volume * (f1[d] * s.s11 + f2[d] * s.s12),
+                p2 = -group.volume * (f1[d] * s.s12 + f2[d] * s.s22);
+    out.force[1][d] = p1 * m[0][0] + p2 * m[0][1];
+    out.force[2][d] = p1 * m[1][0] + p2 * m[1][1];
+    out.force[0][d] = -(out.force[1][d] + out.force[2][d]);
+  }
+  out.energy = group.volume * s.energy;
+  out.exponent = s.exponent;
 }
 
 namespace {
@@ -192,11 +256,6 @@ HingeGeometry hinge_geometry(const Vec3& x0, const Vec3& x1, const Vec3& x2, con
   return g;
 }
 
-// The difference of two angles, brought to (-pi, pi].
-double turn(double angle) {
-  return std::remainder(angle, 2 * M_PI);
-}
-
 }  // namespace
 
 double Shell::hinge_angle(const Points& x, int h, int offset) const {
@@ -205,70 +264,92 @@ double Shell::hinge_angle(const Points& x, int h, int offset) const {
   return angle_of((x1 - x0).cross(x2 - x0), (x3 - x0).cross(x1 - x0), x1 - x0);
 }
 
-double Shell::hinge_forces(const Points& x, int offset, int h, std::array<Vec3, 4>& f) const {
-  const auto& n = hinges_[h].nodes;
-  return hinge_forces({x[offset + n[0]], x[offset + n[1]], x[offset + n[2]], x[offset + n[3]]}, h, f);
+void Shell::hinge_forces(const Points& x, int offset, int g, GroupForces& out) const {
+  std::array<LaneVector, 4> at;
+  for (int l = 0; l < lanes; ++l) {
+    const auto& nodes = hinges_[std::min(g * lanes + l, hinges() - 1)].nodes;
+    for (int k = 0; k < 4; ++k)
+      for (int d = 0; d < 3; ++d) at[k][d][l] = x[offset + nodes[k]][d];
+  }
+  hinge_forces(at, hinge_groups_[g], out);
 }
 
-double Shell::hinge_forces(const std::array<Vec3, 4>& at, int h, std::array<Vec3, 4>& f) const {
-  const Hinge& hinge = hinges_[h];
-  const HingeGeometry g = hinge_geometry(at[0], at[1], at[2], at[3]);
-  const double bend = turn(g.angle - hinge.rest_angle);
-  for (int k = 0; k < 4; ++k) f[k] = -hinge.stiffness * bend * g.gradient[k];
-  return 0.5 * hinge.stiffness * bend * bend;
+// hinge_geometry above, eight times.
+void Shell::hinge_forces(const std::array<LaneVector, 4>& at, const HingeGroup& group,
+                         GroupForces& out) const {
+  const LaneVector edge = difference(at[1], at[0]);
+  const LaneVector to2 = difference(at[2], at[0]), to3 = difference(at[3], at[0]);
+  const LaneVector normal1 = cross(edge, to2), normal2 = cross(to3, edge);
+  const Lanes length = dot(edge, edge).sqrt(), per_length = length.inverse();
+  const Lanes sine = dot(cross(normal1, normal2), edge) * per_length, cosine = dot(normal1, normal2);
+  Lanes bend = materials::angle_of(sine, cosine) - group.rest_angle;  // brought to (-pi, pi]
+  bend -=
+      (bend > M_PI).select(Lanes::Constant(2 * M_PI), (bend < -M_PI).select(Lanes::Constant(-2 * M_PI), 0.0));
+  const Lanes moment = group.stiffness * bend;
+  const Lanes on1 = moment / dot(normal1, normal1).max(1e-20),
+              on2 = moment / dot(normal2, normal2).max(1e-20);
+  const Lanes along2 = dot(to2, edge) * per_length, along3 = dot(to3, edge) * per_length;
+  for (int d = 0; d < 3; ++d) {
+    const Lanes u1 = on1 * normal1[d], u2 = on2 * normal2[d];
+    out.force[2][d] = length * u1;
+    out.force[3][d] = length * u2;
+    out.force[0][d] = (along2 - length) * u1 + (along3 - length) * u2;
+    out.force[1][d] = -along2 * u1 - along3 * u2;
+  }
+  out.energy = 0.5 * moment * bend;
 }
 
-double Shell::add_forces(const Points& x, Points& f, int offset, Part part) const {
+double Shell::add_forces(const Points& x, Points& f, int offset, Part part, double* largest_exponent) const {
   const Range own_elements = share(elements(), part), own_hinges = share(hinges(), part);
-  double energy = 0;
-  const auto add_element = [&](int e, const std::array<Vec3, 3>& g) {
-    for (int k = 0; k < 3; ++k) f[offset + mesh_.triangles[e][k]] += g[k];
-  };
-  const auto add_hinge = [&](int h, const std::array<Vec3, 4>& g) {
-    for (int k = 0; k < 4; ++k) f[offset + hinges_[h].nodes[k]] += g[k];
-  };
-  const int work = own_elements.end - own_elements.begin;
-  if (omp_get_max_threads() == 1 || omp_in_parallel() || work < 500) {
-    for (int e = own_elements.begin; e < own_elements.end; ++e) {
-      std::array<Vec3, 3> g;
-      energy += element_forces(x, offset, e, g);
-      add_element(e, g);
+  double energy = 0, exponent = 0;
+  const auto add = [&](const Range& own, int group, const GroupForces& g, const auto& nodes_of) {
+    const int end = std::min(own.end, (group + 1) * lanes);
+    for (int i = std::max(own.begin, group * lanes); i < end; ++i) {
+      const auto& nodes = nodes_of(i);
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        for (int d = 0; d < 3; ++d) f[offset + nodes[k]][d] += g.force[k][d][i % lanes];
+      energy += g.energy[i % lanes];
     }
-    for (int h = own_hinges.begin; h < own_hinges.end; ++h) {
-      std::array<Vec3, 4> g;
-      energy += hinge_forces(x, offset, h, g);
-      add_hinge(h, g);
-    }
-    return energy;
-  }
-  // Threads fill slots; one thread adds them up in the order of the loop above, so the bits are the same.
-  struct Slot {
-    std::array<Vec3, 4> force;
-    double energy;
   };
-  thread_local std::vector<Slot> storage;
-  std::vector<Slot>& slots = storage;  // the calling thread's own, seen by the team
-  slots.resize(work + own_hinges.end - own_hinges.begin);
-  const int total = static_cast<int>(slots.size());
+  const auto add_elements = [&](int group, const GroupForces& g) {
+    add(own_elements, group, g, [&](int e) -> const Triangle& { return mesh_.triangles[e]; });
+    const int end = std::min(own_elements.end, (group + 1) * lanes);
+    for (int e = std::max(own_elements.begin, group * lanes); e < end; ++e)
+      exponent = std::max(exponent, g.exponent[e % lanes]);
+  };
+  const auto add_hinges = [&](int group, const GroupForces& g) {
+    add(own_hinges, group, g, [&](int h) -> const std::array<int, 4>& { return hinges_[h].nodes; });
+  };
+  const Range element_range{own_elements.begin / lanes, groups_of(own_elements.end)};
+  const Range hinge_range{own_hinges.begin / lanes, groups_of(own_hinges.end)};
+  const int work = element_range.end - element_range.begin;
+  if (omp_get_max_threads() == 1 || omp_in_parallel() || own_elements.end - own_elements.begin < 500) {
+    GroupForces g;
+    for (int e = element_range.begin; e < element_range.end; ++e) {
+      element_forces(x, offset, e, g);
+      add_elements(e, g);
+    }
+    for (int h = hinge_range.begin; h < hinge_range.end; ++h) {
+      hinge_forces(x, offset, h, g);
+      add_hinges(h, g);
+    }
+  } else {
+    // Threads fill slots; one thread adds them up in the order of the loops above, so the bits are the same.
+    thread_local std::vector<GroupForces> storage;
+    std::vector<GroupForces>& slots = storage;  // the calling thread's own, seen by the team
+    slots.resize(work + hinge_range.end - hinge_range.begin);
+    const int total = static_cast<int>(slots.size());
 #pragma omp parallel for schedule(static)
-  for (int i = 0; i < total; ++i) {
-    Slot& slot = slots[i];
-    if (i < work) {
-      std::array<Vec3, 3> g;
-      slot.energy = element_forces(x, offset, own_elements.begin + i, g);
-      for (int k = 0; k < 3; ++k) slot.force[k] = g[k];
-    } else {
-      slot.energy = hinge_forces(x, offset, own_hinges.begin + i - work, slot.force);
+    for (int i = 0; i < total; ++i) {
+      if (i < work)
+        element_forces(x, offset, element_range.begin + i, slots[i]);
+      else
+        hinge_forces(x, offset, hinge_range.begin + i - work, slots[i]);
     }
+    for (int i = 0; i < work; ++i) add_elements(element_range.begin + i, slots[i]);
+    for (int i = work; i < total; ++i) add_hinges(hinge_range.begin + i - work, slots[i]);
   }
-  for (int i = 0; i < work; ++i) {
-    energy += slots[i].energy;
-    add_element(own_elements.begin + i, {slots[i].force[0], slots[i].force[1], slots[i].force[2]});
-  }
-  for (int i = work; i < total; ++i) {
-    energy += slots[i].energy;
-    add_hinge(own_hinges.begin + i - work, slots[i].force);
-  }
+  if (largest_exponent) *largest_exponent = exponent;
   return energy;
 }
 
@@ -401,21 +482,27 @@ void ShellTangent::add_membrane(BlockMatrix& out, int offset) const {
 }
 
 Eigen::MatrixXd Shell::hinge_tangent(const Points& x, int offset, int h) const {
+  // Lane 2 i is a step ahead along the unknown i of four, lane 2 i + 1 a step behind it.
   const std::array<int, 4>& nodes = hinges_[h].nodes;
-  std::array<Vec3, 4> moved;
-  for (int a = 0; a < 4; ++a) moved[a] = x[offset + nodes[a]];
-  const double step = 1e-6 * (moved[1] - moved[0]).norm();
+  const double step = 1e-6 * (x[offset + nodes[1]] - x[offset + nodes[0]]).norm();
+  const HingeGroup group{Lanes::Constant(hinges_[h].rest_angle), Lanes::Constant(hinges_[h].stiffness)};
   Eigen::MatrixXd k(12, 12);
-  for (int column = 0; column < 12; ++column) {
-    double& at = moved[column / 3][column % 3];
-    const double here = at;
-    std::array<Vec3, 4> ahead, behind;
-    at = here + step;
-    hinge_forces(moved, h, ahead);
-    at = here - step;
-    hinge_forces(moved, h, behind);
-    at = here;
-    for (int a = 0; a < 4; ++a) k.block<3, 1>(3 * a, column) = (behind[a] - ahead[a]) / (2 * step);
+  for (int first = 0; first < 12; first += lanes / 2) {
+    std::array<LaneVector, 4> at;
+    for (int a = 0; a < 4; ++a)
+      for (int d = 0; d < 3; ++d) at[a][d] = Lanes::Constant(x[offset + nodes[a]][d]);
+    for (int i = 0; i < lanes / 2; ++i) {
+      Lanes& moved = at[(first + i) / 3][(first + i) % 3];
+      moved[2 * i] += step;
+      moved[2 * i + 1] -= step;
+    }
+    GroupForces g;
+    hinge_forces(at, group, g);
+    for (int i = 0; i < lanes / 2; ++i)
+      for (int row = 0; row < 12; ++row) {
+        const Lanes& force = g.force[row / 3][row % 3];
+        k(row, first + i) = (force[2 * i + 1] - force[2 * i]) / (2 * step);
+      }
   }
   return 0.5 * (k + k.transpose());
 }

@@ -67,8 +67,10 @@ class Shell {
   std::vector<double> lumped_area() const;
 
   /// f[offset + a] += force on node a of the body, whose positions are x[offset + a]; returns the energy.
-  /// Independent of the number of threads. A share of the work gives a share of force and energy.
-  double add_forces(const Points& x, Points& f, int offset = 0, Part part = {}) const;
+  /// Independent of the number of threads. A share of the work gives a share of force and energy, and the
+  /// largest exponent Q in it.
+  double add_forces(const Points& x, Points& f, int offset = 0, Part part = {},
+                    double* largest_exponent = nullptr) const;
 
   /// out += K direction, K the tangent at x made positive semi-definite: the material tangent is so by
   /// construction, the negative eigenvalue of the geometric 2x2 stress is cut off, hinges by Gauss-Newton.
@@ -99,11 +101,28 @@ class Shell {
     std::array<int, 4> nodes;      // edge 0-1, opposite 2 and 3
     double rest_angle, stiffness;  // stiffness = D |e|^2 / (A1 + A2)
   };
-  double element_forces(const Points& x, int offset, int element, std::array<Vec3, 3>& f) const;
-  double hinge_forces(const Points& x, int offset, int hinge, std::array<Vec3, 4>& f) const;
-  /// Never inlined: the compiler would fuse its products differently in the loops of one and of many threads.
-  [[gnu::noinline]] double hinge_forces(const std::array<Vec3, 4>& at, int hinge,
-                                        std::array<Vec3, 4>& f) const;
+  // Elements and hinges are evaluated in groups of eight (materials/lanes.hpp): number g holds 8 g to 8 g +
+  // 7, the last one repeats its last.
+  using Lanes = materials::Lanes;
+  using LaneVector = std::array<Lanes, 3>;
+  struct ElementGroup {
+    std::array<std::array<Lanes, 2>, 2> inverse_edges;
+    Lanes volume, factor;
+    std::array<std::array<Lanes, 2>, 2> fibre;
+  };
+  struct HingeGroup {
+    Lanes rest_angle, stiffness;
+  };
+  struct GroupForces {
+    std::array<LaneVector, 4> force;  // of the corners
+    Lanes energy, exponent;
+  };
+  // Never inlined: the compiler would fuse products differently in the loops of one and of many threads.
+  [[gnu::noinline]] void element_forces(const Points& x, int offset, int group, GroupForces& out) const;
+  [[gnu::noinline]] void hinge_forces(const std::array<LaneVector, 4>& at, const HingeGroup& group,
+                                      GroupForces& out) const;
+  void hinge_forces(const Points& x, int offset, int group, GroupForces& out) const;
+  void build_groups();
   Eigen::MatrixXd hinge_tangent(const Points& x, int offset, int hinge) const;
   void build_elements();
   void build_hinges(const Bending& bending);
@@ -112,6 +131,8 @@ class Shell {
   std::shared_ptr<const materials::PlaneLaw> law_;
   std::vector<Element> elements_;
   std::vector<Hinge> hinges_;
+  std::vector<ElementGroup> element_groups_;
+  std::vector<HingeGroup> hinge_groups_;
 };
 
 /// The tangent in two phases, for power iteration: update once, apply many times.

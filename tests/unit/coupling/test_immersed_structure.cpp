@@ -273,6 +273,7 @@ TEST(ImmersedStructure, AShellTermMovesAsTheImmersedShellDoes) {
   const structure::Body body = structure->add_body("sheet", start, shell.lumped_mass(1e-3));
   ImmersedStructureSettings settings;
   settings.cells = cells_of(mesh.triangles);
+  settings.lead = step_lead;
   ImmersedFlow general(
       other,
       std::make_unique<ImmersedStructure>(

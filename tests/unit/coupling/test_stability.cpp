@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <cmath>
+#include <complex>
 #include <limits>
 
 #include "core/errors.hpp"
+#include "coupling/immersed_body.hpp"
 #include "coupling/stability.hpp"
 
 namespace {
@@ -80,11 +84,69 @@ TEST(PowerIteration, NoStiffnessNoLimit) {
   EXPECT_EQ(power.critical_step(), std::numeric_limits<double>::infinity());
 }
 
+// One mode of a structure that the flow carries along, as ImmersedFlow steps it (stability.hpp):
+//   u' = u + N (1.5 u - 0.5 u_before) - Lambda (x + lead u),  x' = x + u',   dt = 1, N = i theta - D
+// The largest |z| of its growth factors.
+double growth(double lambda, double lead, double theta, double dissipation) {
+  const std::complex<double> n(-dissipation, theta);
+  Eigen::Matrix3cd step;  // of (x, u, u_before)
+  const std::complex<double> on_u = 1.0 + 1.5 * n - lead * lambda, on_before = -0.5 * n;
+  step << 1 - lambda, on_u, on_before, -lambda, on_u, on_before, 0, 1, 0;
+  return Eigen::ComplexEigenSolver<Eigen::Matrix3cd>(step, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+double lambda_at(double lead, double safety) {
+  return safety * safety * 4 / (1 + 2 * lead);
+}
+
+TEST(ModelOfTheStep, TheLimitIsThatOfTheLead) {
+  for (double lead : {0.0, 0.25, 0.5}) {
+    EXPECT_LE(growth(lambda_at(lead, 0.999), lead, 0, 0), 1 + 1e-9) << lead;
+    EXPECT_GT(growth(lambda_at(lead, 1.01), lead, 0, 0), 1.01) << lead;
+  }
+}
+
+TEST(ModelOfTheStep, AB2LagsAndFeedsWhatTheFlowCarries) {
+  const double theta = 1e-4, phi = 2 * std::asin(0.85),
+               fed = std::pow(1 - std::cos(phi), 2) / (2 * std::sin(phi));
+  EXPECT_NEAR((growth(lambda_at(0, 0.85), 0, theta, 0) - 1) / theta, fed, 1e-3 * fed);
+}
+
+TEST(ModelOfTheStep, DissipationLowersTheLimit) {
+  const double d = 0.2;
+  EXPECT_LE(growth(4 * (1 - d) * 0.99, 0, 0, d), 1);
+  EXPECT_GT(growth(4 * (1 - d) * 1.01, 0, 0, d), 1);
+}
+
+// The largest growth of waves of five cells and more, which the flow carries along either way, at the steps
+// that next_step plans.
+double worst_growth(double lead, double convection) {
+  double worst = 0;
+  for (double cfl : {0.01, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35})
+    for (double kh = 0.2; kh <= 2 * M_PI / 5; kh += 0.1)
+      for (double theta : {-cfl * kh, cfl * kh})
+        for (double share : {0.1, 0.2, 0.4, 0.6, 0.8, 1.0}) {
+          const double upwinding = cfl * std::pow(2 - 2 * std::cos(kh), 2) / 12;
+          const double lambda = share * lambda_at(lead, 0.85) * (1 - convection * cfl);
+          worst = std::max(worst, growth(lambda, lead, theta, upwinding));
+        }
+  return worst;
+}
+
+TEST(ModelOfTheStep, WithLeadAndConvectionInTheLimitNoWaveGrows) {
+  const double convection = StepLimits{}.convection;
+  EXPECT_LE(worst_growth(step_lead, convection), 1 + 1e-9);
+  EXPECT_GT(worst_growth(0, convection), 1.02);
+  EXPECT_GT(worst_growth(step_lead, 0), 1.02);
+}
+
 TEST(NextStep, ObeysEveryLimit) {
   const StepLimits limits;
   EXPECT_DOUBLE_EQ(next_step(limits, 1, 0, 1, 0), limits.largest_s);
   EXPECT_DOUBLE_EQ(next_step(limits, 4e-5, 0, 1, 0), 0.85 * 4e-5);
   EXPECT_DOUBLE_EQ(next_step(limits, 1, 1e4, 1, 0), 0.35e-4);
+  const double near_both = next_step(limits, 4e-5, 5e3, 1, 0);
+  EXPECT_NEAR(near_both * near_both, 0.85 * 0.85 * 16e-10 * (1 - limits.convection * 5e3 * near_both), 1e-20);
   EXPECT_DOUBLE_EQ(next_step(limits, 1, 0, 1, 1e-5), 1.3e-5);
   EXPECT_THROW(next_step(limits, 1e-9, 0, 1, 0), NumericalFailure);
   EXPECT_THROW(next_step(limits, std::nan(""), 0, 1, 0), NumericalFailure);

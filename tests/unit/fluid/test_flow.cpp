@@ -48,6 +48,36 @@ TEST(Flow, ProjectionLeavesNoDivergence) {
   }
 }
 
+TEST(Flow, ConstrainLeavesWhatSolidsAndIncompressibilityAllow) {
+  for (const bool with_walls : {false, true}) {
+    Flow flow(MPI_COMM_WORLD, tube_grid(12),
+              with_walls ? Boundaries{} : boundaries_of(Side::periodic, Side::periodic, Side::periodic), {});
+    if (with_walls) flow.solids().set_lumen(tube);
+    flow.set_velocity(rough);
+    const FaceField before = flow.velocity();
+    const auto dot = [](const FaceField& a, const FaceField& b) {
+      double sum = 0;
+      for (int d = 0; d < 3; ++d)
+        for (int k = 0; k < 24; ++k)
+          for (int j = 0; j < 12; ++j)
+            for (int i = 0; i < 12; ++i) sum += a[d](i, j, k) * b[d](i, j, k);
+      return sum;
+    };
+    FaceField once = before;
+    flow.constrain(once);
+    for (int d = 0; d < 3; ++d) EXPECT_EQ(flow.velocity()[d].data(), before[d].data());
+    EXPECT_LT(dot(once, once), 0.9 * dot(before, before));  // it only adds mass
+    flow.velocity() = once;
+    flow.fill_ghosts();
+    EXPECT_LT(flow.divergence(), 1e-11 * 40 / flow.grid().h * 100);
+    if (with_walls) continue;
+    FaceField twice = once;
+    flow.constrain(twice);
+    EXPECT_NEAR(dot(twice, twice), dot(once, once), 1e-12 * dot(once, once));
+    EXPECT_NEAR(dot(once, before), dot(once, once), 1e-12 * dot(once, once));  // a projection, and symmetric
+  }
+}
+
 TEST(Flow, ReportAgreesWithMeasures) {
   Flow flow(MPI_COMM_SELF, tube_grid(10), boundaries_of(Side::slip, Side::wall, Side::open), {});
   flow.set_velocity(rough);

@@ -178,7 +178,7 @@ TEST(Laws, ExponentialIsContinuedTwiceDifferentiably) {
   EXPECT_NEAR(above.value - below.value, 2 * step * e, 1e-9 * e);
   EXPECT_NEAR(above.first - below.first, 2 * step * e, 1e-9 * e);
   EXPECT_NEAR(above.second, below.second, 2e-6 * e);
-  EXPECT_LT(capped_exponential(700).value, 1e9);  // the plain exponential would be 1e304
+  EXPECT_LT(capped_exponential(700.0).value, 1e9);  // the plain exponential would be 1e304
   const Hgo law(native_leaflet_healthy);
   EXPECT_GT(law.derivatives({3.5, 3.5, {1, 1}}, 2, 1).exponent, exponent_cap);
   EXPECT_LT(law.derivatives({3.1, 3.1, {1, 1}}, 2, 1).exponent, exponent_cap);
