@@ -2,11 +2,10 @@
 // body (immersed_body.hpp).
 //
 //   every probe_interval steps, or when the body may have become stiffer: lambda_max anew (stability.hpp)
-//   dt from the limits;  0D models of the ends to t + dt;  F = F(x^n + lead dt U^n);  f = S F;  u^(n+1) by the
-//   projection method;  x^(n+1) = x^n + dt J u^(n+1)
-//   a step whose local CFL number, dt max(|u|+|v|+|w|)/h of u^(n+1), exceeds the limit, or in which bodies would
-//   pass through each other, is undone and repeated with a smaller dt (and AB2 begins anew), so that the limit
-//   holds for every step
+//   dt from the limits;  0D models of the ends to t + dt;  F = F(x^n + lead dt U^n);  f = S F;  u^(n+1) by
+//   the projection method;  x^(n+1) = x^n + dt J u^(n+1) a step whose local CFL number, dt max(|u|+|v|+|w|)/h
+//   of u^(n+1), exceeds the limit, or in which bodies would pass through each other, is undone and repeated
+//   with a smaller dt (and AB2 begins anew), so that the limit holds for every step
 // with S and J at x^n (leaflets that touch: at their standoff, standoff.hpp): symplectic Euler for the
 // structure, so that no energy is put in by the lag.
 #pragma once
