@@ -7,6 +7,7 @@
 #   make verify                       the verification programs, with a table in runs/verify
 #   make lint [SINCE=commit]          clang-format, clang-tidy over all files or those changed since a commit
 #   make tradeoff | extremes          studies of error against time, and of values pushed until something gives
+#   make studies                      benchmark flows against published figures, on grids that take hours
 #   make setup | build | bench | reference | clean
 
 CASE     ?= demo
@@ -24,7 +25,7 @@ OPTIONS  = $(if $(FIDELITY),--fidelity $(FIDELITY)) $(if $(NP),--ranks $(NP)) $(
            $(if $(RESUME),--resume) $(foreach pair,$(SET),--set $(pair))
 STAGES   = segment mesher stent crimp deploy cycle report
 
-.PHONY: demo test setup build run $(STAGES) cohort verify bench tradeoff extremes lint format reference clean
+.PHONY: demo test setup build run $(STAGES) cohort verify bench tradeoff extremes studies lint format reference clean
 
 demo: build
 	$(PIPELINE) run demo --fidelity $(or $(FIDELITY),draft) $(if $(NP),--ranks $(NP)) $(if $(FORCE),--force)
@@ -60,6 +61,10 @@ tradeoff: build
 
 extremes: build
 	for study in pipelines/extremes_*.py; do python3 $$study || exit; done
+
+studies: build
+	python3 pipelines/study_taylor_green.py --cells 32 64 96 128 --schemes conserving4 upwind3 $(if $(NP),--ranks $(NP))
+	python3 pipelines/study_fda.py --reynolds 500 3500 --cells 8 12 16 $(if $(NP),--ranks $(NP))
 
 lint: setup
 	@SINCE="$(SINCE)" sh pipelines/lint.sh

@@ -27,20 +27,21 @@ from structure_runs import ROOT, provenance, write_csv
 RUNS = ROOT / "runs" / "study-fda"
 THROAT_MM = 4.0
 FLOW_MM3_PER_S = {500: 5206.24, 3500: 36443.7}
-SPAN_S = {500: (1.8, 2.0), 3500: (0.15, 0.3)}  # averaged
-CFL = {500: 0.35, 3500: 0.45}
+SPAN_S = {500: (0.8, 1.0), 3500: (0.15, 0.3)}  # averaged
+JET_MM = {500: 120, 3500: 40}  # length of the jet at the start
 
 
-def values_of(reynolds, cells, convection, wall, subgrid):
+def values_of(reynolds, cells, convection, wall, subgrid, span_s):
     """What a run sets besides what stands in the case file."""
     h = THROAT_MM / cells
     off = 1.25 * h
-    a = "(z < -62.685 ? 6 : z < -40 ? 2 - 4*(z+40)/22.685 : z < 40 ? 2 : 6)"
+    a = f"(z < -62.685 ? 6 : z < -40 ? 2 - 4*(z+40)/22.685 : z < {JET_MM[reynolds]} ? 2 : 6)"
     along = f"2 * {FLOW_MM3_PER_S[reynolds]} / pi * max(0, {a}^2 - x^2 - y^2) / {a}^4"
     line = lambda from_z, to_z, from_r, to_r: f"[{from_r - off:.6g}, 0, {from_z}, {to_r - off:.6g}, 0, {to_z}]"
     return {"fluid.grid_mm": f"{h:.17g}", "fluid.convection": convection, "fluid.wall": wall, "fluid.subgrid": subgrid,
-            "fluid.average_from_s": str(SPAN_S[reynolds][0]), "fluid.end_s": str(SPAN_S[reynolds][1]),
-            "fluid.history_rows": "500", "fluid.cfl": str(CFL[reynolds]), "boundary.in.flow_mL_per_s": str(FLOW_MM3_PER_S[reynolds] / 1000),
+            "fluid.average_from_s": str(span_s[0]), "fluid.end_s": str(span_s[1]),
+            "fluid.history_rows": "500", "fluid.cfl": "0.45",
+            "boundary.in.flow_mL_per_s": str(FLOW_MM3_PER_S[reynolds] / 1000),
             "fluid.velocity": json.dumps(["0", "0", along]),
             "flow_probe.wall_tube.line_mm": line(-91.5, -62.685, 6, 6),
             "flow_probe.wall_cone.line_mm": line(-62.685, -40, 6, 2),
@@ -102,8 +103,8 @@ def described(folder, note):
     z, w, z_wall, p = curves(folder)
     stations = [dict(study, **row) for quantity, at, value in (("centreline_axial_velocity", z, w), ("wall_pressure", z_wall, p))
                 for row in compared(study["reynolds"], quantity, at, value)]
-    metrics = note["metrics"]
-    row = dict(study)
+    metrics, values = note["metrics"], note["values"]
+    row = study | {"averaged_s": f"{values['fluid.average_from_s']} to {values['fluid.end_s']}"}
     for name in ("centreline_axial_velocity", "wall_pressure"):
         flags = [s["inside"] for s in stations if s["quantity"] == name]
         row[f"{name}_inside"] = f"{sum(flags)}/{len(flags)}"
@@ -113,8 +114,8 @@ def described(folder, note):
             "pressure_drop_Pa": round(float(np.interp(-90.32, z_wall, p) - np.interp(32.0, z_wall, p)), 1),
             "swing_of_w_80_percent": round(100 * (metrics["w_80_mm_per_s_max"] - metrics["w_80_mm_per_s_min"])
                                            / abs(metrics["w_80_mm_per_s_mean"]), 2),
-            "flow_lost_in_throat_percent": round(100 * (1 - metrics["through_throat_mL_per_s_mean"]
-                                                        / metrics["out_mL_per_s_mean"]), 3),
+            "flow_lost_before_throat_percent": round(100 - 100 * metrics["through_throat_mL_per_s_mean"]
+                                                     / float(values["boundary.in.flow_mL_per_s"]), 3),
             "grid_cells": int(metrics["cells"]), "steps": note["steps"], "ranks": note["ranks"], "wall_s": note["wall_s"],
             "commit": note["source"]["commit"], "machine": note["source"]["machine"],
             "load_at_start": note["source"]["load_at_start"]}
@@ -156,6 +157,7 @@ def main():
     parser.add_argument("--convection", default="upwind3")
     parser.add_argument("--wall", default="interpolated")
     parser.add_argument("--subgrid", default="none")
+    parser.add_argument("--span", type=float, nargs=2, help="times between which to average, s; otherwise 0.8 1 and 0.15 0.3")
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--again", action="store_true", help="repeat what is finished")
     parser.add_argument("--docs", type=Path, default=ROOT / "docs")
@@ -165,7 +167,8 @@ def main():
             study = {"reynolds": reynolds, "cells": cells, "convection": asked.convection, "wall": asked.wall,
                      "subgrid": asked.subgrid}
             folder = RUNS / "-".join(str(v) for v in study.values())
-            note = flow_runs.run("fluid-fda-nozzle", folder, values_of(**study), asked.ranks, asked.again)
+            note = flow_runs.run("fluid-fda-nozzle", folder, values_of(**study, span_s=asked.span or SPAN_S[reynolds]),
+                                 asked.ranks, asked.again)
             (folder / "study.json").write_text(json.dumps(note | {"study": study}, indent=1))
     notes = [(path.parent, json.loads(path.read_text())) for path in RUNS.glob("*/study.json")]
     runs = [described(folder, note) for folder, note in sorted(
