@@ -2,7 +2,7 @@
 
     make cohort COHORT=pipelines/cohorts/leaflet-flutter-2022.csv
     /usr/bin/python3 pipelines/reproduce_flow.py pipelines/cohorts/leaflet-flutter-2022.csv --window 0.1,0.3 \\
-        [--start 0.03] [--planes -1,13] [--band 30,200] [--times 0.23,0.24,0.25,0.26] [--columns q_mL_per_s] [--flow] \\
+        [--start 0.03] [--until 0.255] [--planes -1,13] [--band 30,200] [--times 0.23,0.24,0.25,0.26] [--columns q_mL_per_s] [--flow] \\
         [--pictures docs/pictures/x]
 
 Reads history.csv and the frames in the newest state of each case's cycle. Times are those of the beat, which begins at
@@ -10,7 +10,8 @@ Reads history.csv and the frames in the newest state of each case's cycle. Times
 
   flow      over the forward flow around its peak, as common/metrics/beat.hpp: mean and largest pressure difference (of
             history.csv: 3 mm inside both ends), EOA = Q_rms / (51.6 sqrt(mean difference / rho)), stroke volume, largest
-            orifice; efficiency = energy out / energy in, over all of the beat that was run (said in the table)
+            orifice; efficiency = energy out / energy in, over all of the beat that was run (said in the table), or
+            of it until --until
   spectrum  within --window, of the pressure difference between the two --planes (on the line y = 0, from frames), of the
             orifice and of the radius of the leaflets' tips (the liveliest): quadratic trend removed, Hann window, as
             common/metrics/flutter.hpp. Root mean square within --band, its strongest line, and how much the second half
@@ -38,10 +39,10 @@ MMHG_PER_RHO = 51.6  # mL/s, mmHg, g/cm3, cm2
 class Run:
     """One case: rows of the beat, and frames (leaflets, pressure in the plane y = 0)."""
 
-    def __init__(self, folder, start_s):
+    def __init__(self, folder, start_s, until_s):
         self.table = Table(folder / "history.csv")
         time_s = self.table.column("time_s") - start_s
-        self.beat = time_s >= 0
+        self.beat = (time_s >= 0) & (time_s <= until_s)
         self.time_s = time_s[self.beat]
         self.frames = None
         states = sorted(folder.glob("state_*.h5"))
@@ -259,6 +260,7 @@ def main():
     parser.add_argument("cohort", type=Path)
     parser.add_argument("--runs", type=Path, default=Path("runs"))
     parser.add_argument("--start", type=float, default=0.03)
+    parser.add_argument("--until", type=float, default=np.inf)
     parser.add_argument("--window", type=numbers, default=(0.1, 0.3))
     parser.add_argument("--planes", type=numbers, default=(-1.0, 13.0))
     parser.add_argument("--band", type=numbers, default=(30.0, 200.0))
@@ -273,7 +275,7 @@ def main():
     for name in names:
         folder = options.runs / name / "cycle"
         if (folder / "history.csv").is_file():
-            runs[name] = Run(folder, options.start)
+            runs[name] = Run(folder, options.start, options.until)
         else:
             print(f"{name}: not run ({folder} has no history.csv)\n")
     if not runs:
