@@ -12,7 +12,7 @@ class Nozzle : public testing::TestWithParam<const char*> {};
 
 TEST_P(Nozzle, KeepsItsFlow) {
   FlowRun run(FlowRun::library("fluid-fda-nozzle.toml"),
-              {"fluid.grid_mm=0.8", "fluid.end_s=0.05", "fluid.history_rows=5",
+              {"fluid.grid_mm=0.8", "fluid.end_s=0.02", "fluid.history_rows=5",
                std::string("fluid.wall=") + GetParam()});
   run.to_end();
   const double out = run.metric("out_mL_per_s"), throat = run.metric("through_throat_mL_per_s");
