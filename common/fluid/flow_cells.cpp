@@ -50,7 +50,7 @@ void Flow::prepare_cells() {
   krylov_->build(conductance, known, any);
   if (any) {
     const auto solves = [this](int i, int j, int k) { return krylov_->solves(i, j, k); };
-    openings_->check_joined(solves);
+    openings_->keep_joined(solves, solids_);
     // What no opening reaches stands still.
     for (int d = 0; d < 3; ++d) {
       for (int k = 0; k < (d == 2 ? slab_.w_planes() : slab_.planes); ++k) {

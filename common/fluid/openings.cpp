@@ -10,6 +10,7 @@ namespace valsalva::fluid {
 namespace {
 
 constexpr double depth_cells = 4;     // of what is cut off
+constexpr double still = 1e-9;        // mm/s: below, round-off does not decide what enters
 constexpr double extended_cells = 3;  // beyond the plane: what convection and viscosity read
 
 }  // namespace
@@ -53,7 +54,6 @@ void Openings::build(Solids& solids) {
   find_faces(open);
   find_beyond(open);
   close(solids);
-  kept_rate_.assign(faces_.size(), 0.0);
 }
 
 void Openings::mark_cells() {
@@ -133,6 +133,8 @@ void Openings::find_faces(const FaceField& open) {
             Face face;
             face.opening = o;
             face.d = d;
+            face.of_face = {i, j, k};
+            face.of_cell = c;
             face.face = open[d].index(i, j, k);
             face.cell = open[d].index(c[0], c[1], c[2]);
             face.outward = high ? 1 : -1;
@@ -308,18 +310,32 @@ void Openings::add_known_pressure(int k, double* plane) const {
   }
 }
 
-void Openings::check_joined(const std::function<bool(int, int, int)>& solves) const {
+void Openings::keep_joined(const std::function<bool(int, int, int)>& solves, Solids& solids) {
+  const double face_area = slab_.grid.h * slab_.grid.h;
+  std::vector<double> left(2 * count(), 0.0);  // faces, and flow of the profile
+  std::erase_if(faces_, [&](const Face& face) {
+    if (solves(face.of_cell[0], face.of_cell[1], face.of_cell[2])) {
+      left[2 * face.opening] += 1;
+      left[2 * face.opening + 1] += face_area * face.outward * face.shape;
+      return false;
+    }
+    shut(solids, face.d, face.of_face[0], face.of_face[1], face.of_face[2]);
+    return true;
+  });
+  mpi::sum_in_place(slab_.comm, left.data(), left.size());
   for (int o = 0; o < count(); ++o) {
-    const bool cut = std::any_of(known_.begin(), known_.end(), [&](const KnownCell& cell) {
-      return cell.opening == o && !solves(cell.i, cell.j, cell.k);
-    });
-    if (mpi::any(slab_.comm, cut))
+    if (left[2 * o] == 0 || (known_flow(o) && !(left[2 * o + 1] > 0)))
       throw InputError(
           "fluid: the opening '{}' is joined with no place of known pressure; give the vessel an opening or "
           "an "
           "outflow side of known pressure that it reaches",
           planes_[o].name);
   }
+  for (Face& face : faces_)
+    if (known_flow(face.opening)) face.shape /= left[2 * face.opening + 1];
+  for (Beyond& face : behind_)
+    if (known_flow(face.opening)) face.shape /= left[2 * face.opening + 1];
+  kept_rate_.assign(faces_.size(), 0.0);
 }
 
 void Openings::keep_rates(const FaceField& rate) {
@@ -334,12 +350,19 @@ void Openings::advance(const FaceField& velocity, const Advance& step, FaceField
     if (known_flow(face.opening)) continue;
     const double* q = velocity[face.d].data().data() + face.face;
     double& now = rate[face.d].data()[face.face];
-    const double w = face.near.velocity(velocity).dot(planes_[face.opening].normal);
-    if (w < 0) {
+    const Vec3 mean = face.near.velocity(velocity);
+    const Vec3& n = planes_[face.opening].normal;
+    if (face.outward * q[0] < -still) {
+      // At least the face's own speed: a stream through one face into the cell and out of the next takes from
+      // the reservoir too.
+      const double w = std::min(0.0, mean.dot(n));
+      const double head = std::max(w * w, q[0] * q[0]) / 2;
       const double laplacian = (q[1] + q[-1]) + (q[slab_.stride_y] + q[-slab_.stride_y]) +
                                (q[slab_.stride_z] + q[-slab_.stride_z]) - 6 * q[0];
-      now = face.outward * face.inverse * w * w / (2 * h) + nu_ / (h * h) * laplacian;
+      now = face.outward * face.inverse * head / h + nu_ / (h * h) * laplacian;
     }
+    // Towards flow along the normal, over the time in which it crosses a cell.
+    now -= (std::abs(q[0]) + mean.norm()) / h * (q[0] - mean.dot(n) * n[face.d]);
     double out = q[0] + step.dt * (step.weight_new * now + step.weight_old * kept_rate_[f]);
     if (step.pressure) {
       const double rise = pressure_[face.opening] - step.pressure->data()[face.cell];
@@ -373,7 +396,7 @@ void Openings::extend(FaceField& velocity) const {
     }
     const Vec3& n = planes_[face.opening].normal;
     const double w = face.fluid && face.has_cell ? face.near.velocity(velocity).dot(n) : 0;
-    u = w < 0 ? w * n[face.d] : velocity[face.d].data()[face.source];
+    u = w < -still ? w * n[face.d] : velocity[face.d].data()[face.source];
   }
 }
 

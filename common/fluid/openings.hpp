@@ -9,10 +9,15 @@
 // that across an opening's face, with the fluid cell on the side of the sign o = sign n_d,
 //   dp/dx_d = o (p - p_cell) / (theta h),   theta = -s_cell / (h |n_d|) >= 1/2
 // which is symmetric in the pressure equation (krylov_pressure.hpp) and of second order. What leaves does so
-// with zero gradient of the velocity along n. What enters comes from rest in a reservoir, as at open sides
-// (boundary.hpp): with w = u n < 0 the mean over the faces of the fluid cell,
-//   p - rho w^2 / 2 in place of p,   velocity w n beyond the plane,   viscosity as in the fluid
-// so that an opening gives at most p Q.
+// with zero gradient of the velocity along n. What enters through a face comes from rest in a reservoir, as
+// at open sides (boundary.hpp): with w = u n the mean over the faces of the fluid cell, and u_d the face's
+// own,
+//   p - rho max(w^2 where w < 0, u_d^2) / 2 in place of p,   velocity w n beyond the plane where w < 0,
+//   viscosity as in the fluid
+// so that an opening gives at most p Q. Towards zero tangential velocity: on an opening's face
+//   du_d/dt = ... - (|u_d| + |u|) / h (u_d - (u n) n_d)
+// Without it corners of the stairs that an oblique plane makes feed streams of their own (three times
+// sqrt(2 p / rho) in single cells).
 //
 // Known flow Q: velocity along n with the given profile; its sum over the opening's faces is Q to round-off.
 #pragma once
@@ -59,8 +64,9 @@ class Openings {
   void add_known_pressure(int k, double* plane) const;
   /// Takes a face out of the fluid for good.
   void shut(Solids& solids, int d, int i, int j, int k) const { solids.claim(body_, d, i, j, k); }
-  /// InputError for an opening whose fluid cells are not solved for.
-  void check_joined(const std::function<bool(int i, int j, int k)>& solves) const;
+  /// Shuts the faces of cells that are not solved for: corners that nothing else joins with the fluid.
+  /// InputError for an opening that is left without faces.
+  void keep_joined(const std::function<bool(int i, int j, int k)>& solves, Solids& solids);
 
   /// Before and after Momentum::advance: the openings' faces instead of what it made of them.
   void keep_rates(const FaceField& rate);
@@ -93,6 +99,7 @@ class Openings {
   };
   struct Face {  // of this rank
     int opening, d;
+    std::array<int, 3> of_face, of_cell;
     std::ptrdiff_t face, cell;
     double outward, inverse;  ///< o, and 1/theta
     double shape;             ///< of known flow: velocity at a flow of 1
