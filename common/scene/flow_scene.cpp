@@ -103,8 +103,8 @@ void declare_flow_probe(Schema& schema) {
   schema.choice(
       "flow_probe.quantity", "velocity",
       {"velocity", "pressure", "profile", "flow", "section_pressure", "side_flow", "opening_flow", "opening_pressure", "force", "moment",
-       "wall_shear_stress", "momentum", "kinetic_energy", "dissipation", "enstrophy", "divergence", "velocity_error",
-       "pressure_error", "step", "pressure_iterations"},
+       "wall_shear_stress", "momentum", "kinetic_energy", "dissipation", "enstrophy", "divergence",
+       "velocity_error", "pressure_error", "step", "pressure_iterations"},
       "At a point; along a line (own file); through a section or a side; on an obstacle; of the whole "
       "box; against exact expressions");
   schema.choice("flow_probe.component", "all", {"all", "x", "y", "z", "magnitude"},
@@ -121,7 +121,9 @@ void declare_flow_probe(Schema& schema) {
   schema.real("flow_probe.at_mm", 0, unlimited(), "Its place on that axis");
   schema.reals("flow_probe.low_mm", {-1e9, -1e9, -1e9}, 3, unlimited(), "Only faces above this corner");
   schema.reals("flow_probe.high_mm", {1e9, 1e9, 1e9}, 3, unlimited(), "and below this one");
-  schema.text("flow_probe.of", "", "force, moment: the obstacle or body; wall_shear_stress: the obstacle");
+  schema.text("flow_probe.of", "",
+              "force, moment: the obstacle or body; wall_shear_stress: the obstacle; opening_flow (out of the "
+              "fluid), opening_pressure: the opening");
   schema.texts("flow_probe.with", {}, "force, moment: further obstacles and bodies, whose part is added");
   schema.real("flow_probe.reference_speed_mm_per_s", 0, not_negative(),
               "force: with it and the area, columns of coefficients, force / (density speed^2 area / 2)");
