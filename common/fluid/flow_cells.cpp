@@ -52,13 +52,12 @@ void Flow::prepare_cells() {
     const auto solves = [this](int i, int j, int k) { return krylov_->solves(i, j, k); };
     openings_->keep_joined(solves, solids_);
     // What no opening reaches stands still.
-    for (int d = 0; d < 3; ++d) {
+    for (int d = 0; d < 4; ++d) {
       for (int k = 0; k < (d == 2 ? slab_.w_planes() : slab_.planes); ++k) {
         for (int j = 0; j < grid.cells[1]; ++j) {
           for (int i = 0; i < grid.cells[0]; ++i) {
-            if (solids_.owner(d, i, j, k) == 0 && !solves(i, j, k) &&
-                !solves(i - (d == 0), j - (d == 1), k - (d == 2)))
-              openings_->shut(solids_, d, i, j, k);
+            const bool reached = solves(i, j, k) || solves(i - (d == 0), j - (d == 1), k - (d == 2));
+            if (solids_.owner(d, i, j, k) == 0 && !reached) openings_->shut(solids_, d, i, j, k);
           }
         }
       }
