@@ -191,7 +191,6 @@ FibreFields fibres_of(const Case& body, const materials::MaterialSet& material, 
     for (std::size_t i = 0; i < angles.size(); ++i)
       (i == 0 ? fields.first : fields.second).push_back(Eigen::AngleAxisd(rad_per_deg * angles[i], n) * mean);
   }
-  if (fields.second.empty()) fields.second = fields.first;
   return fields;
 }
 

@@ -87,7 +87,7 @@ double ImmersedFlow::critical_step() const {
   return power_.critical_step() / std::sqrt(1 + 2 * body_->lead());
 }
 
-double ImmersedFlow::plan(double at_most) {
+double ImmersedFlow::plan() {
   double stiffening = 1;
   if (body_) {
     locate();
@@ -110,10 +110,7 @@ double ImmersedFlow::plan(double at_most) {
   const double critical = body_ ? critical_step() / std::sqrt(std::max(1.0, stiffening))
                                 : std::numeric_limits<double>::infinity();
   limits.cfl *= planned_share;
-  const double dt = next_step(limits, critical, max_speed_, flow_.grid().h, last_dt_);
-  // What is left is halved rather than leave a last step by round-off alone, from which the next could not
-  // grow.
-  return at_most <= dt ? at_most : std::min(dt, 0.5 * at_most);
+  return next_step(limits, critical, max_speed_, flow_.grid().h, last_dt_);
 }
 
 ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double dt)>& set_ends) {
@@ -122,7 +119,9 @@ ImmersedStep ImmersedFlow::step(double at_most, const std::function<void(double 
 
 ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
   ImmersedStep done;
-  done.dt_s = plan(at_most);
+  const double planned = plan();
+  // Rather two halves than a last step that only round-off or a little has left over.
+  done.dt_s = at_most <= planned ? at_most : at_most < 1.1 * planned ? 0.5 * at_most : planned;
   if (hooks.fit) done.dt_s = hooks.fit(done.dt_s);
   if (hooks.set_force) {
     hooks.set_force(done.dt_s);
@@ -161,7 +160,7 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
     last_velocity_ = velocity_;
   }
   max_speed_ = done.fluid.max_speed;
-  last_dt_ = done.dt_s;
+  last_dt_ = done.repeats > 0 ? done.dt_s : planned;  // what was asked for does not hold the next one back
   ++steps_;
   return done;
 }

@@ -82,7 +82,7 @@ class ImmersedFlow {
   void probe();
   void iterate(int iterations);
   double critical_step() const;
-  double plan(double at_most);
+  double plan();
   void locate();
   void spread(const Points& force, fluid::FaceField& density);
   void interpolate(const fluid::FaceField& velocity, Points& out);

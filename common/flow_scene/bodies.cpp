@@ -212,6 +212,7 @@ void Bodies::immerse(const Case& scene, fluid::Flow& flow, const Frame& frame, d
   tie_rate_ = scene.real("coupling.tie_rate_per_s");
   settings.tie_rate_per_s = tie_rate_ > 0 ? tie_rate_ : 1e-9;  // hardly any, for auto_tie_rate
   settings.rotation_damping_per_s = scene.real("coupling.rotation_damping_per_s");
+  settings.lead = scene.real("coupling.lead");
   std::vector<std::shared_ptr<structure::ForceTerm>> terms = scene_.terms;
   if (displaced_) terms.push_back(displaced_);
   auto structure =

@@ -136,6 +136,34 @@ TEST(Scene, ComposesBodiesSetsAndSupports) {
   EXPECT_NEAR(area, 2, 1e-12);
 }
 
+// W of the fibres is k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1), once for each family.
+TEST(Scene, OneFamilyOfFibresCountsOnce) {
+  const auto energy = [](const std::string& angles) {
+    const Scene s = compose(read(R"(
+[[body]]
+name = "sheet"
+shape = "plate"
+size_mm = [2, 1]
+divisions = [4, 2]
+thickness_mm = 0.2
+law = "hgo"
+law_parameters = ["c10_Pa = 1e-6", "c01 = 1", "k1_Pa = 1e4", "k2 = 5"]
+fibres = "constant"
+fibre_direction = [1, 0, 0]
+fibre_angles_deg = )" + angles));
+    structure::Configuration at = s.system->state;
+    for (Vec3& x : at.x) x.x() *= 1.1;
+    structure::Forces f;
+    f.reset(at.x.size(), at.rotation.size());
+    double sum = 0;
+    for (const auto& term : s.terms) sum += term->add_forces(at, f);
+    return sum;
+  };
+  const double e = 1.1 * 1.1 - 1, expected = 2 * 1 * 0.2 * 1e4 / 10 * (std::exp(5 * e * e) - 1);
+  EXPECT_NEAR(energy("[0]"), expected, 1e-6 * expected);
+  EXPECT_NEAR(energy("[0, 0]"), 2 * expected, 1e-6 * expected);
+}
+
 TEST(Scene, RefusesWhatIsWrongAndSaysWhere) {
   expect_refused("[dynamics]\n", {"no [[body]]"});
   expect_refused(plate + "[[body]]\nname = \"sheet\"\nshape = \"plate\"\n", {"size_mm", "2"});
