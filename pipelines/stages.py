@@ -82,7 +82,7 @@ class Chain:
     def environment(self, stage):
         """Threads for the stages on one rank; one thread a rank for the cycle."""
         environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        environment.setdefault("OMP_NUM_THREADS", "1" if stage == "cycle" else str(os.cpu_count() or 1))
+        environment.setdefault("OMP_NUM_THREADS", "1" if stage == "cycle" and "fluid" in self.tables else str(os.cpu_count() or 1))
         environment.setdefault("OMP_WAIT_POLICY", "passive")
         return environment
 
