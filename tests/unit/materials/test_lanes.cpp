@@ -40,7 +40,8 @@ PlaneFibres two_fibres() {
 
 void expect_equal(const PlaneLaw& law) {
   const PlaneFibres fibres = two_fibres();
-  PlaneLanes at{.families = 2};
+  PlaneLanes at;
+  at.families = 2;
   std::array<Eigen::Matrix2d, lane_count> c;
   for (int l = 0; l < lane_count; ++l) {
     const double a = 0.8 + 0.1 * l;  // pressed, at rest, stretched to beyond the cap of the exponential
