@@ -59,7 +59,7 @@ def parent(scene, edge):
     folder = FOLDER / "meshes"
     folder.mkdir(parents=True, exist_ok=True)
     stage = "deploy" if "[device]" in (runs.ROOT / "pipelines" / "cases" / f"{scene}.toml").read_text() else "mesher"
-    words = [sys.executable, "pipelines/pipeline.py", stage, scene, "--fidelity", "draft", "--runs", folder, "--set",
+    words = [sys.executable, "pipelines/pipeline.py", "stage", stage, scene, "--fidelity", "draft", "--runs", folder, "--set",
              f"case.name={name}", "--set", f"mesh.leaflet_edge_mm={edge}"]
     if stage == "deploy":
         words += ["--set", f"device.leaflet_edge_mm={edge}"]
