@@ -306,4 +306,16 @@ Scene compose(const Case& scene, const References& references, std::optional<dou
   return Composer(scene, references, end_s).compose();
 }
 
+double kinetic_of(const Scene& scene) {
+  const structure::System& system = *scene.system;
+  double twice = 0;
+  for (std::size_t a = 0; a < system.nodes(); ++a)
+    if (!system.held(static_cast<int>(a)))
+      twice += system.mass(static_cast<int>(a)) * system.state.v[a].squaredNorm();
+  for (std::size_t r = 0; r < system.rotational_nodes(); ++r)
+    twice += system.inertia(static_cast<int>(r)) * system.state.angular_velocity[r].squaredNorm();
+  for (const auto& body : scene.rigid) twice += 2 * body->kinetic_energy();
+  return 0.5 * twice;
+}
+
 }  // namespace valsalva::assembly

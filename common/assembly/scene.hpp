@@ -50,4 +50,7 @@ using References = std::map<std::string, Points>;
 /// run in a scene with fluid; otherwise [dynamics] says so.
 Scene compose(const Case& scene, const References& references = {}, std::optional<double> end_s = {});
 
+/// Of nodes that are not held, rotations and free rigid bodies, nJ.
+double kinetic_of(const Scene& scene);
+
 }  // namespace valsalva::assembly

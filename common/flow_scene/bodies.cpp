@@ -299,17 +299,6 @@ coupling::ImmersedStep Bodies::step(double start_s, double at_most, coupling::St
   return done;
 }
 
-double Bodies::kinetic_nJ() const {
-  const structure::System& system = *scene_.system;
-  double twice = 0;
-  for (std::size_t a = 0; a < system.nodes(); ++a)
-    if (!system.held(static_cast<int>(a)))
-      twice += system.mass(static_cast<int>(a)) * system.state.v[a].squaredNorm();
-  for (std::size_t r = 0; r < system.rotational_nodes(); ++r)
-    twice += system.inertia(static_cast<int>(r)) * system.state.angular_velocity[r].squaredNorm();
-  return 0.5 * twice;
-}
-
 Bodies::Motion Bodies::motion_of(const BuiltBody& body) const {
   const structure::System& system = *scene_.system;
   Motion out;

@@ -47,8 +47,7 @@ class Bodies {
   coupling::ImmersedStep step(double start_s, double at_most, coupling::StepHooks hooks);
 
   const std::vector<std::string>& columns() const { return probes_->columns(); }
-  std::vector<double> values() const { return probes_->values(scene_, kinetic_nJ()); }
-  double kinetic_nJ() const;
+  std::vector<double> values() const { return probes_->values(scene_, assembly::kinetic_of(scene_)); }
   /// Of the fluid on a body, about a point: micronewton, micronewton mm.
   Obstacles::Load load_on(const std::string& name, const Vec3& about) const;
   /// Of what they have beyond the fluid's density, g mm/s.

@@ -29,17 +29,18 @@ inline Lanes exponential(const Lanes& x) {
   return x.exp();
 }
 
+/// The larger and the smaller of both; a where it is not a number, so that it is not hidden.
 inline double larger(double a, double b) {
-  return a > b ? a : b;
+  return b > a ? b : a;
 }
 inline Lanes larger(const Lanes& a, const Lanes& b) {
-  return a.max(b);
+  return (b > a).select(b, a);
 }
 inline double smaller(double a, double b) {
-  return a < b ? a : b;
+  return b < a ? b : a;
 }
 inline Lanes smaller(const Lanes& a, const Lanes& b) {
-  return a.min(b);
+  return (b < a).select(b, a);
 }
 
 /// a > b ? yes : no

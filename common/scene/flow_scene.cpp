@@ -2,6 +2,26 @@
 
 namespace valsalva {
 
+namespace {
+
+/// What stands behind the prescribed values of sides and openings: their factor over time, resistance,
+/// Windkessel.
+void declare_course(Schema& schema, const std::string& table) {
+  schema.reals(table + ".time_s", {}, 0, not_negative(), "Times of the factor table, ascending");
+  schema.reals(table + ".factor", {}, 0, unlimited(), "Its values; linear between them");
+  schema.text(table + ".factor_file", "", "The table as two columns, time_s and factor (.csv)");
+  schema.text(table + ".factor_of_t", "", "Or an expression of t");
+  schema.real(table + ".period_s", 0, not_negative(), "Period after which the table begins anew; 0: none");
+  schema.real(table + ".resistance_Pa_s_per_mL", 0, not_negative(),
+              "Known pressure: resistance behind it (with a compliance: the peripheral one)");
+  schema.real(table + ".characteristic_Pa_s_per_mL", 0, not_negative(),
+              "Known pressure with a compliance: resistance before it");
+  schema.real(table + ".compliance_mL_per_Pa", 0, not_negative(),
+              "Known pressure: compliance of a Windkessel");
+}
+
+}  // namespace
+
 void declare_boundary(Schema& schema) {
   schema.tables("boundary",
                 "What happens on sides of the fluid's box; sides without an entry are slip sides");
@@ -23,16 +43,7 @@ void declare_boundary(Schema& schema) {
   schema.real("boundary.flow_mL_per_s", 0, unlimited(), "Or its flow, exact on the grid");
   schema.real("boundary.pressure_Pa", 0, unlimited(),
               "outflow: pressure at factor 1; behind a resistance: that of its far end");
-  schema.reals("boundary.time_s", {}, 0, not_negative(), "Times of the factor table, ascending");
-  schema.reals("boundary.factor", {}, 0, unlimited(), "Its values; linear between them");
-  schema.text("boundary.factor_file", "", "The table as two columns, time_s and factor (.csv)");
-  schema.text("boundary.factor_of_t", "", "Or an expression of t");
-  schema.real("boundary.period_s", 0, not_negative(), "Period after which the table begins anew; 0: none");
-  schema.real("boundary.resistance_Pa_s_per_mL", 0, not_negative(),
-              "outflow: resistance behind the side (with a compliance: the peripheral one)");
-  schema.real("boundary.characteristic_Pa_s_per_mL", 0, not_negative(),
-              "outflow with a compliance: resistance before it");
-  schema.real("boundary.compliance_mL_per_Pa", 0, not_negative(), "outflow: compliance of a Windkessel");
+  declare_course(schema, "boundary");
 }
 
 void declare_obstacle(Schema& schema) {
@@ -75,26 +86,19 @@ void declare_obstacle(Schema& schema) {
 void declare_opening(Schema& schema) {
   schema.tables("opening", "Where a plane cuts a vessel open inside the fluid's box");
   schema.text("opening.name", "", "Its name");
-  schema.reals("opening.centre_mm", {0, 0, 0}, 3, unlimited(), "A point of the plane, in the vessel's middle");
+  schema.reals("opening.centre_mm", {0, 0, 0}, 3, unlimited(),
+               "A point of the plane, in the vessel's middle");
   schema.reals("opening.normal", {0, 0, 1}, 3, unlimited(), "Normal of the plane, out of the fluid");
   schema.real("opening.radius_mm", 0, not_negative(),
               "The plane cuts within this of centre_mm; across the whole vessel, and no other one");
   schema.choice("opening.kind", "pressure", {"pressure", "flow"}, "What is known there");
   schema.real("opening.pressure_Pa", 0, unlimited(),
               "pressure: at factor 1; behind a resistance: that of its far end");
-  schema.real("opening.flow_mL_per_s", 0, unlimited(), "flow: into the fluid, at factor 1; exact on the grid");
+  schema.real("opening.flow_mL_per_s", 0, unlimited(),
+              "flow: into the fluid, at factor 1; exact on the grid");
   schema.choice("opening.profile", "uniform", {"uniform", "parabola"},
                 "flow: even, or that of developed flow over the section, whatever its shape");
-  schema.reals("opening.time_s", {}, 0, not_negative(), "Times of the factor table, ascending");
-  schema.reals("opening.factor", {}, 0, unlimited(), "Its values; linear between them");
-  schema.text("opening.factor_file", "", "The table as two columns, time_s and factor (.csv)");
-  schema.text("opening.factor_of_t", "", "Or an expression of t");
-  schema.real("opening.period_s", 0, not_negative(), "Period after which the table begins anew; 0: none");
-  schema.real("opening.resistance_Pa_s_per_mL", 0, not_negative(),
-              "pressure: resistance behind the opening (with a compliance: the peripheral one)");
-  schema.real("opening.characteristic_Pa_s_per_mL", 0, not_negative(),
-              "pressure, with a compliance: resistance before it");
-  schema.real("opening.compliance_mL_per_Pa", 0, not_negative(), "pressure: compliance of a Windkessel");
+  declare_course(schema, "opening");
 }
 
 void declare_flow_probe(Schema& schema) {
@@ -102,9 +106,10 @@ void declare_flow_probe(Schema& schema) {
   schema.text("flow_probe.name", "", "Its name");
   schema.choice(
       "flow_probe.quantity", "velocity",
-      {"velocity", "pressure", "profile", "flow", "section_pressure", "side_flow", "opening_flow", "opening_pressure", "force", "moment",
-       "wall_shear_stress", "momentum", "kinetic_energy", "dissipation", "enstrophy", "divergence",
-       "velocity_error", "pressure_error", "step", "pressure_iterations"},
+      {"velocity",          "pressure",       "profile",          "flow",        "section_pressure",
+       "side_flow",         "opening_flow",   "opening_pressure", "force",       "moment",
+       "wall_shear_stress", "momentum",       "kinetic_energy",   "dissipation", "enstrophy",
+       "divergence",        "velocity_error", "pressure_error",   "step",        "pressure_iterations"},
       "At a point; along a line (own file); through a section or a side; on an obstacle; of the whole "
       "box; against exact expressions");
   schema.choice("flow_probe.component", "all", {"all", "x", "y", "z", "magnitude"},
@@ -121,9 +126,10 @@ void declare_flow_probe(Schema& schema) {
   schema.real("flow_probe.at_mm", 0, unlimited(), "Its place on that axis");
   schema.reals("flow_probe.low_mm", {-1e9, -1e9, -1e9}, 3, unlimited(), "Only faces above this corner");
   schema.reals("flow_probe.high_mm", {1e9, 1e9, 1e9}, 3, unlimited(), "and below this one");
-  schema.text("flow_probe.of", "",
-              "force, moment: the obstacle or body; wall_shear_stress: the obstacle; opening_flow (out of the "
-              "fluid), opening_pressure: the opening");
+  schema.text(
+      "flow_probe.of", "",
+      "force, moment: the obstacle or body; wall_shear_stress: the obstacle; opening_flow (out of the "
+      "fluid), opening_pressure: the opening");
   schema.texts("flow_probe.with", {}, "force, moment: further obstacles and bodies, whose part is added");
   schema.real("flow_probe.reference_speed_mm_per_s", 0, not_negative(),
               "force: with it and the area, columns of coefficients, force / (density speed^2 area / 2)");

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "materials/fibre_exponential.hpp"
 #include "materials/hgo.hpp"
 #include "materials/lanes.hpp"
 #include "materials/neo_hookean.hpp"
@@ -29,6 +30,14 @@ TEST(Lanes, AnglesAreThoseOfTheArcTangent) {
   EXPECT_EQ(angle_of(zero, one)[0], 0);
   EXPECT_NEAR(angle_of(zero, -one)[0], M_PI, 1e-15);
   EXPECT_EQ(angle_of(zero, zero)[0], 0);
+}
+
+TEST(Lanes, WhatIsNotANumberStaysSo) {
+  const double nan = std::nan("");
+  EXPECT_TRUE(std::isnan(capped_exponential<double>(nan).value));
+  EXPECT_TRUE(std::isnan(fibre_exponential<double>(1, 1, nan).first));
+  EXPECT_TRUE(capped_exponential<Lanes>(Lanes::Constant(nan)).value.isNaN().all());
+  EXPECT_TRUE(fibre_exponential<Lanes>(1, 1, Lanes::Constant(nan)).first.isNaN().all());
 }
 
 PlaneFibres two_fibres() {
