@@ -65,8 +65,6 @@ class ImmersedBody {
   /// much too fast.
   virtual void move(Points& velocity, double dt_s) = 0;
   virtual EdgeStretch edge_stretch(const Points& since) const = 0;
-  /// The share of the motion dt velocity, above 0 and up to 1, in which nothing passes through anything.
-  virtual double allowed_share(const Points& /*velocity*/, double /*dt_s*/) const { return 1; }
   /// An upper estimate of how many times as stiff the body has become since update_tangent(), whose edges
   /// have been strained by `strain` since then.
   virtual double stiffening(double strain) const { return 1 + stiffening_per_strain * strain; }

@@ -24,6 +24,9 @@ ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedBody> body
       transfer_(flow.slab(), settings.kernel,
                 {flow.boundaries().periodic(0), flow.boundaries().periodic(1), flow.boundaries().periodic(2)},
                 settings.beyond),
+      walls_(flow.grid(), settings.kernel,
+             {flow.boundaries().periodic(0), flow.boundaries().periodic(1), flow.boundaries().periodic(2)},
+             settings.beyond),
       power_(body_ ? body_->unknowns() : 0),
       last_velocity_(body_ ? body_->unknowns() : 0, Vec3::Zero()),
       change_(last_velocity_),
@@ -43,12 +46,14 @@ void ImmersedFlow::spread(const Points& force, fluid::FaceField& density) {
   }
 }
 
-void ImmersedFlow::interpolate(const fluid::FaceField& velocity, Points& out) {
+void ImmersedFlow::interpolate(const fluid::FaceField& velocity, Points& out, bool of_flow) {
   if (const Sampling* sampling = body_->sampling()) {
     transfer_.interpolate(velocity, at_points_);
+    if (of_flow) walls_.add(body_->coupling_points(), flow_.boundaries().velocity, at_points_);
     sampling->to_nodes(at_points_, out);
   } else {
     transfer_.interpolate(velocity, out);
+    if (of_flow) walls_.add(body_->coupling_points(), flow_.boundaries().velocity, out);
   }
 }
 
@@ -138,23 +143,17 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
     if (hooks.set_ends) hooks.set_ends(done.dt_s);
     flow_.predict(done.dt_s);
     done.fluid = flow_.project(done.dt_s);
-    double share = done.fluid.cfl <= limit ? 1 : limit / done.fluid.cfl;
-    if (body_ && share == 1) {
-      interpolate(flow_.velocity(), velocity_);
-      share = body_->allowed_share(velocity_, done.dt_s);
-    }
-    if (share == 1) break;
+    if (done.fluid.cfl <= limit) break;
     flow_.undo();
-    done.dt_s *= std::max(smallest_cut, planned_share * share);
+    done.dt_s *= std::max(smallest_cut, planned_share * limit / done.fluid.cfl);
     if (done.dt_s < settings_.limits.smallest_s)
       throw NumericalFailure(
-          "coupling: the time step fell to {:.3g} s, and still {} (the fluid moves {:.3g} cells in it)",
-          done.dt_s,
-          done.fluid.cfl <= limit ? "bodies would pass through each other" : "the fluid is too fast",
-          done.fluid.cfl);
+          "coupling: the time step fell to {:.3g} s, and still the fluid would move {:.3g} cells in it",
+          done.dt_s, done.fluid.cfl);
   }
   done.critical_s = body_ ? critical_step() : std::numeric_limits<double>::infinity();
   if (body_) {
+    interpolate(flow_.velocity(), velocity_, true);
     body_->move(velocity_, done.dt_s);
     for (std::size_t a = 0; a < velocity_.size(); ++a) change_[a] = velocity_[a] - last_velocity_[a];
     last_velocity_ = velocity_;

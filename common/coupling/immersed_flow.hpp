@@ -4,8 +4,8 @@
 //   every probe_interval steps, or when the body may have become stiffer: lambda_max anew (stability.hpp)
 //   dt from the limits;  0D models of the ends to t + dt;  F = F(x^n + lead dt U^n);  f = S F;  u^(n+1) by
 //   the projection method;  x^(n+1) = x^n + dt J u^(n+1) a step whose local CFL number, dt max(|u|+|v|+|w|)/h
-//   of u^(n+1), exceeds the limit, or in which bodies would pass through each other, is undone and repeated
-//   with a smaller dt (and AB2 begins anew), so that the limit holds for every step
+//   of u^(n+1), exceeds the limit is undone and repeated with a smaller dt (and AB2 begins anew), so that the
+//   limit holds for every step
 // with S and J at x^n (leaflets that touch: at their standoff, standoff.hpp): symplectic Euler for the
 // structure, so that no energy is put in by the lag.
 #pragma once
@@ -16,6 +16,7 @@
 
 #include "coupling/immersed_body.hpp"
 #include "coupling/immersed_shell.hpp"
+#include "coupling/moving_walls.hpp"
 #include "coupling/stability.hpp"
 #include "coupling/transfer.hpp"
 #include "fluid/flow.hpp"
@@ -85,13 +86,15 @@ class ImmersedFlow {
   double plan();
   void locate();
   void spread(const Points& force, fluid::FaceField& density);
-  void interpolate(const fluid::FaceField& velocity, Points& out);
+  /// of_flow: the flow's own velocity, which walls may give images of (moving_walls.hpp).
+  void interpolate(const fluid::FaceField& velocity, Points& out, bool of_flow = false);
 
   fluid::Flow& flow_;
   std::unique_ptr<ImmersedBody> body_;
   ImmersedShell* shell_;
   ImmersedFlowSettings settings_;
   Transfer transfer_;
+  MovingWalls walls_;
   PowerIteration power_;
   Points last_velocity_, change_;  // of the unknowns in the last step; its difference to the step before
   Points probed_x_;                // where lambda_max was last looked for

@@ -116,19 +116,6 @@ double ImmersedStructure::stiffening(double strain) const {
   return ImmersedBody::stiffening(strain);
 }
 
-double ImmersedStructure::allowed_share(const Points& velocity, double dt_s) const {
-  if (abrupt_.empty()) return 1;
-  Points to = x();
-  for (std::size_t a = 0; a < to.size(); ++a) {
-    Vec3 v = velocity[a];
-    if (!held_.empty()) v += held_[a] * (system_->state.v[a] - v);
-    to[a] += dt_s * v;
-  }
-  double share = 1;
-  for (const auto& term : abrupt_) share = std::min(share, term->allowed_motion(system_->state, to));
-  return share;
-}
-
 void ImmersedStructure::moved() {
   if (sampling_) sampling_->locate(system_->state.x);
 }
@@ -244,6 +231,10 @@ void ImmersedStructure::move(Points& velocity, double dt_s) {
           system_->describe(static_cast<int>(a)), state.x[a].x(), state.x[a].y(), state.x[a].z(),
           velocity[a].norm(), fastest_mm_per_s);
     state.v[a] = velocity[a];
+  }
+  if (settings_.guard) settings_.guard(*system_, dt_s);
+  for (std::size_t a = 0; a < state.x.size(); ++a) {
+    velocity[a] = state.v[a];
     state.x[a] += dt_s * velocity[a];
   }
   for (std::size_t t = 0; t < twin_of_.size(); ++t) {

@@ -16,13 +16,14 @@
 // w: well above the frequencies of the motion, (motion/w)^2 being the slip of the twin; the tie's own limit
 // is 2 / (w sqrt(1 + rho_s/rho_f)), so that some tenth of the elastic frequencies costs nothing.
 //
-// Contact: a step in which something would pass through something is undone by the ImmersedFlow; the limit of
-// the step is looked for anew as soon as the stiffness bound of contact has grown by a fifth.
+// Contact: a node that would pass through something lags behind the fluid (settings.guard); the limit of the
+// step is looked for anew as soon as the stiffness bound of contact has grown by a fifth.
 //
 // Limits: the fluid's incompressibility and viscosity hold inside the body; lighter bodies than the fluid are
 // refused; the work of the terms is not divided among ranks.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -40,6 +41,8 @@ struct ImmersedStructureSettings {
   std::vector<double> excess_mass_g;  ///< one a node, >= 0; empty: none
   double tie_rate_per_s = 0;          ///< w; positive where there is excess mass
   double rotation_damping_per_s = 0;  ///< c
+  /// Before every motion: slows nodes (state.v) that would pass through something in the step (contact).
+  std::function<void(structure::System&, double dt_s)> guard;
   /// Of the forces, as step_lead for leaflets: steps of 1.9 times the length, but more error in time (the
   /// spinning disc of 8 cells a radius: 0.113 instead of 0.074).
   double lead = 0;
@@ -77,7 +80,6 @@ class ImmersedStructure : public ImmersedBody {
   void tangent_product(const Points& direction, Points& out) const override;
   void move(Points& velocity, double dt_s) override;
   EdgeStretch edge_stretch(const Points& since) const override;
-  double allowed_share(const Points& velocity, double dt_s) const override;
   double stiffening(double strain) const override;
   std::map<std::string, state::Array> save() const override;
   void load(const state::State& state) override;

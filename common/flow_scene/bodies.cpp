@@ -213,6 +213,13 @@ void Bodies::immerse(const Case& scene, fluid::Flow& flow, const Frame& frame, d
   settings.tie_rate_per_s = tie_rate_ > 0 ? tie_rate_ : 1e-9;  // hardly any, for auto_tie_rate
   settings.rotation_damping_per_s = scene.real("coupling.rotation_damping_per_s");
   settings.lead = scene.real("coupling.lead");
+  if (!scene_.body_contacts.empty())
+    settings.guard = [this](structure::System& moving, double dt) {
+      Points to = moving.state.x;
+      for (std::size_t a = 0; a < to.size(); ++a) to[a] += dt * moving.state.v[a];
+      for (const auto& contact : scene_.body_contacts)
+        if (contact->allowed_motion(moving.state, to) < 1) slowed_ += contact->limit_velocities(moving, dt);
+    };
   std::vector<std::shared_ptr<structure::ForceTerm>> terms = scene_.terms;
   if (displaced_) terms.push_back(displaced_);
   auto structure =
@@ -273,7 +280,7 @@ void Bodies::check_places(const fluid::Flow& flow, const Frame& frame, const cou
       if (!couples_[a] || (x[a][e] >= low_[e] && x[a][e] <= high_[e])) continue;
       throw InputError(
           "{}: [[body]]: {} at ({:.6g}, {:.6g}, {:.6g}) mm is outside fluid.box_mm along {}, or less than {} "
-          "cells of {:.4g} mm from a side that is open or moves; expected a larger box",
+          "cells of {:.4g} mm from an open side or an inflow; expected a larger box",
           file_, scene_.system->describe(static_cast<int>(a)), x[a].x(), x[a].y(), x[a].z(), "xyz"[e],
           room_cells, grid.h);
     }
@@ -356,19 +363,21 @@ std::map<std::string, double> Bodies::metrics() const {
           {"coupling_tie_rate_per_s", tie_rate_},
           {"coupling_largest_slip_mm", largest_slip_},
           {"coupling_critical_step_s", std::isfinite(critical_s_) ? critical_s_ : 0},
-          {"coupling_repeated_steps", static_cast<double>(repeats_)}};
+          {"coupling_repeated_steps", static_cast<double>(repeats_)},
+          {"coupling_slowed_nodes", static_cast<double>(slowed_)}};
 }
 
 std::vector<double> Bodies::save() const {
-  return {largest_slip_, critical_s_, static_cast<double>(repeats_)};
+  return {largest_slip_, critical_s_, static_cast<double>(repeats_), static_cast<double>(slowed_)};
 }
 
 void Bodies::restore(const std::vector<double>& saved) {
-  if (saved.size() != 3)
-    throw InputError("the state's figures of bodies have {} entries, expected 3", saved.size());
+  if (saved.size() != 4)
+    throw InputError("the state's figures of bodies have {} entries, expected 4", saved.size());
   largest_slip_ = saved[0];
   critical_s_ = saved[1];
   repeats_ = static_cast<long>(saved[2]);
+  slowed_ = static_cast<long>(saved[3]);
 }
 
 }  // namespace valsalva::flow_scene

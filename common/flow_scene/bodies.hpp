@@ -82,7 +82,7 @@ class Bodies {
   std::vector<Motion> rate_;                       // of each body, over the last step
   double density_ratio_ = 1, largest_slip_ = 0, tie_rate_ = 0, critical_s_ = 0;
   std::size_t points_ = 0;
-  long repeats_ = 0;
+  long repeats_ = 0, slowed_ = 0;
 };
 
 }  // namespace valsalva::flow_scene

@@ -84,7 +84,7 @@ fluid::FlowParameters parameters_of(const Case& scene, const Sides& sides) {
   return p;
 }
 
-/// Bodies may reach up to slip sides and to walls at rest.
+/// Bodies may reach up to slip sides and walls.
 coupling::Surroundings beyond(const Sides& sides) {
   coupling::Surroundings out{};
   const fluid::Boundaries boundaries = sides.boundaries();
@@ -92,8 +92,7 @@ coupling::Surroundings beyond(const Sides& sides) {
     for (int side = 0; side < 2; ++side) {
       const fluid::Side kind = boundaries.side[axis][side];
       if (kind == fluid::Side::slip) out[axis][side] = coupling::Beyond::slip;
-      if (kind == fluid::Side::wall && !sides.moves(sides.frame().case_axis(axis), side))
-        out[axis][side] = coupling::Beyond::wall;
+      if (kind == fluid::Side::wall) out[axis][side] = coupling::Beyond::wall;
     }
   }
   return out;

@@ -38,12 +38,6 @@ class Sides {
   bool ends_anywhere(int case_axis) const {
     return kind_[case_axis][1] == fluid::Side::open || kind_[case_axis][1] == fluid::Side::slip;
   }
-  /// Does a wall there have a velocity?
-  bool moves(int case_axis, int side) const {
-    if (entry_of_[case_axis][side] < 0) return false;
-    const VectorExpression& velocity = *entries_[entry_of_[case_axis][side]].velocity;
-    return velocity.changes() || velocity.varies() || !velocity(Vec3::Zero(), 0).isZero();
-  }
   bool has_outflow() const;
   /// Is the pressure to be that of the fluid's cells alone (fluid/krylov_pressure.hpp)?
   bool fluid_cells() const { return fluid_cells_; }

@@ -63,8 +63,7 @@ void TurnedBody::move(Points& velocity, double dt_s) {
     if (couples_[a] && !inside)
       throw NumericalFailure(
           "coupling: {} at ({:.4g}, {:.4g}, {:.4g}) mm is outside the fluid's box, or less than two cells "
-          "from a "
-          "side that is open or moves; make the box larger",
+          "from an open side or an inflow; make the box larger",
           body_->system().describe(static_cast<int>(a)), x[a].x(), x[a].y(), x[a].z());
   }
   moved();
@@ -72,10 +71,6 @@ void TurnedBody::move(Points& velocity, double dt_s) {
 
 coupling::EdgeStretch TurnedBody::edge_stretch(const Points& since) const {
   return body_->edge_stretch(to_case(since));
-}
-
-double TurnedBody::allowed_share(const Points& velocity, double dt_s) const {
-  return body_->allowed_share(to_case(velocity), dt_s);
 }
 
 }  // namespace valsalva::flow_scene

@@ -34,7 +34,6 @@ class TurnedBody : public coupling::ImmersedBody {
   /// NumericalFailure, too, that names a node that has left its room.
   void move(Points& velocity, double dt_s) override;
   coupling::EdgeStretch edge_stretch(const Points& since) const override;
-  double allowed_share(const Points& velocity, double dt_s) const override;
   double stiffening(double strain) const override { return body_->stiffening(strain); }
   std::map<std::string, state::Array> save() const override { return body_->save(); }
   void load(const state::State& state) override { body_->load(state); }
