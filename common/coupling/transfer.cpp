@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/errors.hpp"
 #include "core/mpi.hpp"
@@ -35,7 +36,9 @@ void Transfer::locate(const Points& x) {
     lowest[d] = beyond_[d][0] == Beyond::nothing ? margin_cells : -round_off;
     highest[d] = grid.cells[d] - (beyond_[d][1] == Beyond::nothing ? margin_cells : -round_off);
   }
-  stencils_.resize(x.size());
+  nodes_ = x.size();
+  planes_ = {std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
+  stencils_.clear();
   for (std::size_t a = 0; a < x.size(); ++a) {
     Vec3 cell = per_mm * (x[a] - grid.origin);
     for (int d = 0; d < 3; ++d) {
@@ -47,9 +50,27 @@ void Transfer::locate(const Points& x) {
             "fluid's "
             "box or outside it; the time step was too large or the box does not hold the body",
             a, x[a].x(), x[a].y(), x[a].z(), margin_cells);
-      stencils_[a].face[d] = weights(kernel_.along, cell[d]);
-      stencils_[a].centre[d] = weights(kernel_.across, cell[d] - 0.5);
     }
+    Stencil& stencil = stencils_.emplace_back();
+    stencil.node = a;
+    const auto take = [&](int d) {
+      stencil.face[d] = weights(kernel_.along, cell[d]);
+      stencil.centre[d] = weights(kernel_.across, cell[d] - 0.5);
+      return !wraps(d, stencil.face[d]) && !wraps(d, stencil.centre[d]);
+    };
+    stencil.within = take(2);
+    const int low = std::min(stencil.face[2].start, stencil.centre[2].start) - slab_.first;
+    const int high = std::max(stencil.face[2].start, stencil.centre[2].start) + 4 - slab_.first;
+    if (!stencil.within) {
+      planes_ = {};
+    } else {
+      planes_ = {std::min(planes_.from, low), std::max(planes_.to, high)};
+      if (high <= 0 || low >= slab_.w_planes()) {
+        stencils_.pop_back();
+        continue;
+      }
+    }
+    for (int d = 0; d < 2; ++d) stencil.within = take(d) && stencil.within;
   }
 }
 
@@ -65,11 +86,26 @@ Transfer::Image Transfer::image(int i, int d, bool normal) const {
   return {mirrored, normal == (kind == Beyond::wall) ? 1.0 : -1.0};
 }
 
-// Calls row(face index j, local k, weight across) for every owned row of faces in the stencil.
+template <class Value, class Row>
+void Transfer::each_row(const Stencil& stencil, int component, Value* field, Row&& row) const {
+  const Weights& y = stencil.along(1, component);
+  const Weights& z = stencil.along(2, component);
+  const int used_y = support(component == 1 ? kernel_.along : kernel_.across);
+  const int used_z = support(component == 2 ? kernel_.along : kernel_.across);
+  const int planes = component == 2 ? slab_.w_planes() : slab_.planes, below = slab_.first - z.start;
+  const int from = std::max(0, below), to = std::min(used_z, below + planes);
+  Value* plane =
+      field + y.start * slab_.stride_y + (from - below) * slab_.stride_z + stencil.along(0, component).start;
+  for (int c = from; c < to; ++c, plane += slab_.stride_z) {
+    Value* at = plane;
+    for (int b = 0; b < used_y; ++b, at += slab_.stride_y) row(at, z.value[c] * y.value[b]);
+  }
+}
+
 template <class Row>
-void Transfer::visit(const Stencil& stencil, int component, Row&& row) const {
-  const Weights& y = component == 1 ? stencil.face[1] : stencil.centre[1];
-  const Weights& z = component == 2 ? stencil.face[2] : stencil.centre[2];
+void Transfer::each_image(const Stencil& stencil, int component, Row&& row) const {
+  const Weights& y = stencil.along(1, component);
+  const Weights& z = stencil.along(2, component);
   const int planes = component == 2 ? slab_.w_planes() : slab_.planes;
   const int used_y = support(component == 1 ? kernel_.along : kernel_.across);
   const int used_z = support(component == 2 ? kernel_.along : kernel_.across);
@@ -84,33 +120,33 @@ void Transfer::visit(const Stencil& stencil, int component, Row&& row) const {
   }
 }
 
-// Does the stencil reach beyond the box along x, or to its sides?
-bool Transfer::wraps(const Weights& x) const {
-  const int n = slab_.grid.cells[0];
-  if (periodic_[0]) return x.start < 0 || x.start + 4 > n;
-  return (beyond_[0][0] != Beyond::nothing && x.start <= 0) ||
-         (beyond_[0][1] != Beyond::nothing && x.start + 4 > n);
+bool Transfer::wraps(int d, const Weights& w) const {
+  const int n = slab_.grid.cells[d];
+  if (periodic_[d]) return w.start < 0 || w.start + 4 > n;
+  return (beyond_[d][0] != Beyond::nothing && w.start <= 0) ||
+         (beyond_[d][1] != Beyond::nothing && w.start + 4 > n);
 }
 
 void Transfer::spread(const Points& force, fluid::FaceField& density) const {
-  VALSALVA_ASSERT(force.size() >= stencils_.size());
+  VALSALVA_ASSERT(force.size() >= nodes_);
   const double per_volume = 1 / (slab_.grid.h * slab_.grid.h * slab_.grid.h);
   for (int d = 0; d < 3; ++d) {
     fluid::Field& field = density[d];
-    for (std::size_t a = 0; a < stencils_.size(); ++a) {
-      if (force[a][d] == 0) continue;
-      const Weights& x = d == 0 ? stencils_[a].face[0] : stencils_[a].centre[0];
-      const Quad along = per_volume * force[a][d] * Eigen::Map<const Quad>(x.value.data());
-      if (wraps(x)) {
-        visit(stencils_[a], d, [&](int j, int k, double across) {
+    double* origin = field.row(0, 0);
+    for (const Stencil& stencil : stencils_) {
+      const double f = force[stencil.node][d];
+      if (f == 0) continue;
+      const Weights& x = stencil.along(0, d);
+      const Quad along = per_volume * f * Eigen::Map<const Quad>(x.value.data());
+      if (stencil.within) {
+        each_row(stencil, d, origin,
+                 [&](double* at, double across) { Eigen::Map<Quad>(at) += across * along; });
+      } else {
+        each_image(stencil, d, [&](int j, int k, double across) {
           for (int i = 0; i < 4; ++i) {
             const Image at = image(x.start + i, 0, d == 0);
             if (at.sign != 0) field(at.index, j, k) += at.sign * across * along[i];
           }
-        });
-      } else {
-        visit(stencils_[a], d, [&](int j, int k, double across) {
-          Eigen::Map<Quad>(field.row(j, k) + x.start) += across * along;
         });
       }
     }
@@ -118,26 +154,26 @@ void Transfer::spread(const Points& force, fluid::FaceField& density) const {
 }
 
 void Transfer::interpolate(const fluid::FaceField& velocity, Points& out) const {
-  out.resize(stencils_.size());
+  out.assign(nodes_, Vec3::Zero());
   for (int d = 0; d < 3; ++d) {
     const fluid::Field& field = velocity[d];
-    for (std::size_t a = 0; a < stencils_.size(); ++a) {
-      const Weights& x = d == 0 ? stencils_[a].face[0] : stencils_[a].centre[0];
+    const double* origin = field.row(0, 0);
+    for (const Stencil& stencil : stencils_) {
+      const Weights& x = stencil.along(0, d);
       Quad sum = Quad::Zero();
-      if (wraps(x)) {
-        visit(stencils_[a], d, [&](int j, int k, double across) {
+      if (stencil.within) {
+        each_row(stencil, d, origin,
+                 [&](const double* at, double across) { sum += across * Eigen::Map<const Quad>(at); });
+      } else {
+        each_image(stencil, d, [&](int j, int k, double across) {
           for (int i = 0; i < 4; ++i) {
             const Image at = image(x.start + i, 0, d == 0);
             if (at.sign != 0) sum[i] += at.sign * across * field(at.index, j, k);
           }
         });
-      } else {
-        visit(stencils_[a], d, [&](int j, int k, double across) {
-          sum += across * Eigen::Map<const Quad>(field.row(j, k) + x.start);
-        });
       }
       const Quad part = sum * Eigen::Map<const Quad>(x.value.data());
-      out[a][d] = (part[0] + part[1]) + (part[2] + part[3]);
+      out[stencil.node][d] = (part[0] + part[1]) + (part[2] + part[3]);
     }
   }
   if (slab_.ranks > 1 && !out.empty()) mpi::sum_in_place(slab_.comm, out[0].data(), 3 * out.size());

@@ -20,6 +20,7 @@
 #include "core/types.hpp"
 #include "coupling/kernel.hpp"
 #include "fluid/grid.hpp"
+#include "fluid/pressure_solver.hpp"
 
 namespace valsalva::coupling {
 
@@ -40,15 +41,28 @@ class Transfer {
   void spread(const Points& force, fluid::FaceField& density) const;
   /// out = J velocity, the same on all ranks (collective). Ghosts are not read.
   void interpolate(const fluid::FaceField& velocity, Points& out) const;
-  std::size_t nodes() const { return stencils_.size(); }
+  std::size_t nodes() const { return nodes_; }
+  /// Those that hold all faces which nodes act on, of all ranks (local numbers, here or not).
+  fluid::Planes planes() const { return planes_; }
 
  private:
-  struct Stencil {  // one direction each: samples at faces and at cell centres
-    std::array<Weights, 3> face, centre;
+  struct Stencil {
+    std::size_t node = 0;
+    bool within = false;                  // the box, with every sample: no images
+    std::array<Weights, 3> face, centre;  // in each direction, of samples at faces and at cell centres
+    const Weights& along(int direction, int component) const {
+      return direction == component ? face[direction] : centre[direction];
+    }
   };
+  /// Calls row(first face of the stencil along x, weight across) for every owned row of faces in a stencil
+  /// within the box.
+  template <class Value, class Row>
+  void each_row(const Stencil& stencil, int component, Value* field, Row&& row) const;
+  /// Calls row(face index j, local k, weight across) for every owned row of any stencil.
   template <class Row>
-  void visit(const Stencil& stencil, int component, Row&& row) const;
-  bool wraps(const Weights& x) const;
+  void each_image(const Stencil& stencil, int component, Row&& row) const;
+  /// Does the stencil reach beyond the box along d, or to its sides?
+  bool wraps(int d, const Weights& w) const;
   struct Image {
     int index = 0;
     double sign = 1;  // 0: on a wall, where nothing acts
@@ -60,7 +74,9 @@ class Transfer {
   Kernel kernel_;
   std::array<bool, 3> periodic_;
   Surroundings beyond_;
-  std::vector<Stencil> stencils_;
+  std::size_t nodes_ = 0;
+  fluid::Planes planes_;
+  std::vector<Stencil> stencils_;  // of the nodes that touch the rank's own faces
 };
 
 }  // namespace valsalva::coupling

@@ -304,20 +304,22 @@ std::array<const double*, 3> Flow::faces_of(int place, int k) const {
   return {velocity_[0].row(j, k) + i, velocity_[1].row(j, k) + i, velocity_[2].row(j, k) + i};
 }
 
-void Flow::constrain(FaceField& velocity) {
+void Flow::constrain(FaceField& velocity, Planes within) {
   VALSALVA_ASSERT(parameters_.order == 2);
-  solids_.still(velocity);
+  solids_.still(velocity, within);
   if (krylov_) return;
+  // A cell beneath a plane of faces w has them for its upper ones.
+  const Planes of_cells{std::max(within.from, 1) - 1, within.to};
   velocity_.swap(velocity);
   exchange_planes(slab_, velocity_[2], 1);
   poisson_->solve([&](int k, double* plane) { fill_source(k, 1, Given::nothing, plane); },
-                  [&](int k, const double* plane) { keep_correction(k, plane); });
+                  [&](int k, const double* plane) { keep_correction(k, plane); }, of_cells);
   fill_phi_ghosts(correction_, {0, 0});
   const double factor = 1 / (parameters_.density * slab_.grid.h);
   const std::array<std::ptrdiff_t, 3> stride{1, slab_.stride_y, slab_.stride_z};
   for (int d = 0; d < 3; ++d) {
-    const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
-    for (int k = 0; k < planes; ++k)
+    const int planes = std::min(within.to, d == 2 ? slab_.w_planes() : slab_.planes);
+    for (int k = std::max(within.from, 0); k < planes; ++k)
       for (int j = 0; j < slab_.grid.cells[1]; ++j) {
         double* u = velocity_[d].row(j, k);
         const double* phi = correction_.row(j, k);

@@ -163,8 +163,8 @@ class Flow {
   /// What solids and incompressibility leave of a velocity: zero at solid faces, then free of divergence with
   /// no pressure at open ends and no flow through inflow sides; where the pressure is solved by
   /// iterations (krylov) solid faces alone. Owned faces only. Not between predict and project; not of fourth
-  /// order.
-  void constrain(FaceField& velocity);
+  /// order. within: the velocity is zero in all other planes (of all ranks), and stays so here.
+  void constrain(FaceField& velocity, Planes within = {});
   /// NumericalFailure (on all ranks) that names the cell when the new velocity is not finite.
   StepReport project(double dt);
   StepReport step(double dt) {

@@ -316,7 +316,7 @@ void KrylovPressure::assemble(const FaceField& c, const Field& known) {
       matrix_of(slab_.comm, static_cast<PetscInt>(unknowns_.size()), rows, columns, values));
 }
 
-void KrylovPressure::solve(const Source& source, const Sink& sink) {
+void KrylovPressure::solve(const Source& source, const Sink& sink, Planes) {
   const int nx = slab_.grid.cells[0];
   const double h2 = slab_.grid.h * slab_.grid.h;
   std::vector<double> plane(slab_.grid.plane_cells());

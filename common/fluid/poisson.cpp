@@ -29,9 +29,9 @@ struct Poisson::Impl {
 
   void factorise(const Boundaries& boundaries);
   void make_reduced_system();
-  void forward(const Source& b);
+  void forward(const Source& b, Planes within);
   void exchange_ends();
-  void backward(const Sink& phi);
+  void backward(const Sink& phi, Planes within);
   void solve_free_mean();
 
   double* plane(std::vector<double>& planes, int step) { return planes.data() + plane_of(step) * modes; }
@@ -179,7 +179,7 @@ void Poisson::Impl::make_reduced_system() {
   received.resize(sent.size());
 }
 
-void Poisson::Impl::forward(const Source& b) {
+void Poisson::Impl::forward(const Source& b, Planes within) {
   const bool needs_first = has_start;
   if (needs_first) {
     std::fill(first_value.begin(), first_value.end(), 0.0);
@@ -187,9 +187,14 @@ void Poisson::Impl::forward(const Source& b) {
   }
   double* in = work.data();
   for (int step = 0; step < planes; ++step) {
-    b(static_cast<int>(plane_of(step)), cells.data());
-    transform.forward(cells.data(), in);
-    mean_mode[plane_of(step)] = scale * in[0];
+    const int k = static_cast<int>(plane_of(step));
+    if (within.has(k)) {
+      b(k, cells.data());
+      transform.forward(cells.data(), in);
+    } else {
+      std::fill_n(in, modes, 0.0);
+    }
+    mean_mode[k] = scale * in[0];
     const double* pivot = plane(inverse, step);
     double* now = plane(reduced, step);
     if (step == 0) {
@@ -248,7 +253,7 @@ void Poisson::Impl::exchange_ends() {
   }
 }
 
-void Poisson::Impl::backward(const Sink& phi) {
+void Poisson::Impl::backward(const Sink& phi, Planes within) {
   if (has_start) {
     for (int step = 0; step < planes; ++step) {
       const double* pivot = plane(inverse, step);
@@ -272,9 +277,11 @@ void Poisson::Impl::backward(const Sink& phi) {
     const double* now = plane(reduced, step);
 #pragma omp simd
     for (std::size_t m = 0; m < modes; ++m) out[m] = before[m] = now[m] + pivot[m] * before[m];
-    if (free_mean) out[0] = mean_mode[plane_of(step)];
+    const int k = static_cast<int>(plane_of(step));
+    if (!within.has(k)) continue;
+    if (free_mean) out[0] = mean_mode[k];
     transform.backward(out, cells.data());
-    phi(static_cast<int>(plane_of(step)), cells.data());
+    phi(k, cells.data());
   }
 }
 
@@ -304,11 +311,11 @@ Poisson::Poisson(const Slab& slab, const Boundaries& boundaries)
     : impl_(std::make_unique<Impl>(slab, boundaries)) {}
 Poisson::~Poisson() = default;
 
-void Poisson::solve(const Source& b, const Sink& phi) {
-  impl_->forward(b);
+void Poisson::solve(const Source& b, const Sink& phi, Planes within) {
+  impl_->forward(b, within);
   if (impl_->has_end) impl_->exchange_ends();
   if (impl_->free_mean) impl_->solve_free_mean();
-  impl_->backward(phi);
+  impl_->backward(phi, within);
 }
 
 }  // namespace valsalva::fluid

@@ -76,7 +76,7 @@ void PeriodicPoisson::exchange(const std::complex<double>* from, const std::vect
                 MPI_DOUBLE, comm_);
 }
 
-void PeriodicPoisson::solve(const Source& b, const Sink& phi) {
+void PeriodicPoisson::solve(const Source& b, const Sink& phi, Planes) {
   const int ranks = static_cast<int>(mode_first_.size()) - 1;
   // A bundle: for each rank in turn, the modes that it owns, plane after plane.
   const auto part = [&](int r, int k) {

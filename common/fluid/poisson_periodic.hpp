@@ -22,7 +22,7 @@ class PeriodicPoisson : public PressureSolver {
  public:
   /// symbol: kappa of an angle in (-pi, pi].
   PeriodicPoisson(const Slab& slab, const std::function<double(double)>& symbol);
-  void solve(const Source& b, const Sink& phi) override;
+  void solve(const Source& b, const Sink& phi, Planes within = {}) override;
 
  private:
   struct Free {

@@ -317,13 +317,22 @@ void Solids::penalise(double dt, double eta, const FaceField& last, FaceField& v
   }
 }
 
-void Solids::still(FaceField& velocity) {
+void Solids::still(FaceField& velocity, Planes within) {
   prepare();
   for (int d = 0; d < 3; ++d) {
+    const int planes = d == 2 ? slab_.w_planes() : slab_.planes;
+    const std::ptrdiff_t from = velocity[d].index(-ghosts, -ghosts, std::clamp(within.from, 0, planes)),
+                         to = velocity[d].index(-ghosts, -ghosts, std::clamp(within.to, 0, planes));
     double* u = velocity[d].data().data();
-    for (const Ghost& ghost : ghosts_[d]) u[ghost.index] = 0;
-    for (const Run& run : walls_[d]) std::fill_n(u + run.first, run.count, 0.0);
-    for (const Held& face : held_[d]) u[face.index] = 0;
+    // The lists are in the order of the index.
+    const auto each_within = [&](const auto& faces, auto index, const auto& action) {
+      auto face = std::lower_bound(faces.begin(), faces.end(), from,
+                                   [&](const auto& one, std::ptrdiff_t at) { return one.*index < at; });
+      for (; face != faces.end() && (*face).*index < to; ++face) action(*face);
+    };
+    each_within(ghosts_[d], &Ghost::index, [&](const Ghost& ghost) { u[ghost.index] = 0; });
+    each_within(walls_[d], &Run::first, [&](const Run& run) { std::fill_n(u + run.first, run.count, 0.0); });
+    each_within(held_[d], &Held::index, [&](const Held& face) { u[face.index] = 0; });
   }
 }
 

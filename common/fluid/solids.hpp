@@ -31,6 +31,7 @@
 #include <vector>
 
 #include "fluid/grid.hpp"
+#include "fluid/pressure_solver.hpp"
 #include "geometry/grid_sdf.hpp"
 
 namespace valsalva::fluid {
@@ -90,8 +91,8 @@ class Solids {
   /// Penalises all owned faces with ratio = dt/eta, and keeps the momentum taken from the fluid for force_on.
   /// last: the velocity at the end of the last step, with valid ghosts (read for interpolated walls only).
   void penalise(double dt, double eta, const FaceField& last, FaceField& velocity);
-  /// Zero at all held faces of this rank, ghost faces too.
-  void still(FaceField& velocity);
+  /// Zero at all held faces of this rank in the given planes, ghost faces too.
+  void still(FaceField& velocity, Planes within = {});
   /// Ghost faces of the interpolated wall on this rank, and those of them that found no place to interpolate
   /// at.
   long ghost_faces() const;

@@ -13,16 +13,26 @@ double weighted_percentile(const std::vector<double>& values, const std::vector<
   if (values.empty()) return 0;
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  const auto smaller = [&](std::size_t a, std::size_t b) {
     return values[a] != values[b] ? values[a] < values[b] : a < b;
-  });
+  };
   const double wanted = share * std::accumulate(weights.begin(), weights.end(), 0.0);
+  // Sorts only the part in which the value lies, halving it around its median.
+  auto from = order.begin(), to = order.end();
   double below = 0;
-  for (const std::size_t i : order) {
-    below += weights[i];
-    if (below >= wanted) return values[i];
+  while (to - from > 1) {
+    const auto middle = from + (to - from) / 2;
+    std::nth_element(from, middle, to, smaller);
+    const double lower = std::accumulate(from, middle, below,
+                                         [&](double sum, std::size_t i) { return sum + weights[i]; });
+    if (lower >= wanted) {
+      to = middle;
+    } else {
+      from = middle;
+      below = lower;
+    }
   }
-  return values[order.back()];
+  return values[*from];
 }
 
 }  // namespace valsalva::metrics

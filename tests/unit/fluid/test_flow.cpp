@@ -78,6 +78,25 @@ TEST(Flow, ConstrainLeavesWhatSolidsAndIncompressibilityAllow) {
   }
 }
 
+TEST(Flow, ConstrainWithinSomePlanesDoesTheSameThere) {
+  Flow flow(MPI_COMM_WORLD, tube_grid(12), Boundaries{}, {});
+  flow.solids().set_lumen(tube);
+  const Planes some{7, 15};
+  FaceField whole(flow.slab());
+  for (int d = 0; d < 3; ++d)
+    for (int k = some.from; k < some.to; ++k)
+      for (int j = 0; j < 12; ++j)
+        for (int i = 0; i < 12; ++i) whole[d](i, j, k) = rough(d, flow.grid().position(d, i, j, k));
+  FaceField within = whole;
+  flow.constrain(whole);
+  flow.constrain(within, some);
+  for (int d = 0; d < 3; ++d)
+    for (int k = 0; k < 24; ++k)
+      for (int j = 0; j < 12; ++j)
+        for (int i = 0; i < 12; ++i)
+          ASSERT_EQ(within[d](i, j, k), some.has(k) ? whole[d](i, j, k) : 0) << d << " " << k;
+}
+
 TEST(Flow, ReportAgreesWithMeasures) {
   Flow flow(MPI_COMM_SELF, tube_grid(10), boundaries_of(Side::slip, Side::wall, Side::open), {});
   flow.set_velocity(rough);
