@@ -13,6 +13,14 @@ namespace {
 constexpr double planned_share = 0.9;  // of the CFL limit: the speed grows within the step
 constexpr double smallest_cut = 0.1;
 
+void clear(const fluid::Slab& slab, fluid::Planes planes, fluid::FaceField& field) {
+  for (int d = 0; d < 3; ++d) {
+    const int from = std::max(planes.from, 0),
+              to = std::min(planes.to, d == 2 ? slab.w_planes() : slab.planes);
+    if (from < to) std::fill_n(field[d].row(0, from), (to - from) * slab.stride_z, 0.0);
+  }
+}
+
 }  // namespace
 
 ImmersedFlow::ImmersedFlow(fluid::Flow& flow, std::unique_ptr<ImmersedBody> body,
@@ -77,9 +85,9 @@ void ImmersedFlow::iterate(int iterations) {
   const bool with_projection = body_->lead() > 0 && flow_.parameters().order == 2;
   const Operator stiffness = [&](const Points& y, Points& f) { body_->tangent_product(y, f); };
   const Operator mobility = [&](const Points& f, Points& v) {
-    scratch_.fill(0);
+    clear(flow_.slab(), transfer_.planes(), scratch_);
     spread(f, scratch_);
-    if (with_projection) flow_.constrain(scratch_);
+    if (with_projection) flow_.constrain(scratch_, transfer_.planes());
     interpolate(scratch_, v);
     for (Vec3& each : v) each *= per_density;
     for (std::size_t i = 0; i < own.size(); ++i) v.push_back(f[f.size() - own.size() + i] / own[i]);
@@ -130,8 +138,10 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
   if (hooks.fit) done.dt_s = hooks.fit(done.dt_s);
   if (hooks.set_force) {
     hooks.set_force(done.dt_s);
+    forced_ = {};
   } else {
-    flow_.clear_force();
+    clear(flow_.slab(), forced_, flow_.force());
+    forced_ = body_ ? transfer_.planes() : fluid::Planes{0, 0};
   }
   if (body_) {
     body_->begin_step(done.dt_s, last_velocity_);
