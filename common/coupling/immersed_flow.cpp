@@ -85,10 +85,10 @@ void ImmersedFlow::iterate(int iterations) {
   const bool with_projection = body_->lead() > 0 && flow_.parameters().order == 2;
   const Operator stiffness = [&](const Points& y, Points& f) { body_->tangent_product(y, f); };
   const Operator mobility = [&](const Points& f, Points& v) {
-    clear(flow_.slab(), transfer_.planes(), scratch_);
     spread(f, scratch_);
     if (with_projection) flow_.constrain(scratch_, transfer_.planes());
     interpolate(scratch_, v);
+    clear(flow_.slab(), transfer_.planes(), scratch_);  // it stays zero between the products
     for (Vec3& each : v) each *= per_density;
     for (std::size_t i = 0; i < own.size(); ++i) v.push_back(f[f.size() - own.size() + i] / own[i]);
   };
