@@ -112,6 +112,7 @@ class DryRun {
 
   void begin() {
     state::drop_kept(context_);
+    if (!prestress_.equilibrium.empty()) march_->start_from(prestress_.equilibrium, prestress_.stored_nJ);
     add_row();
     keep_views();
   }
@@ -187,7 +188,9 @@ class DryRun {
     for (const auto& [name, value] : march_->metrics()) m["solver_" + name] = value;
     if (assembly::wants_prestress(context_.scene)) {
       m["prestress_iterations"] = prestress_.iterations;
-      m["prestress_error_mm"] = assembly::distance_from_given(scene_);
+      m["prestress_error_mm"] = assembly::loaded_at_the_end(context_.scene)
+                                    ? assembly::distance_from_given(scene_)
+                                    : prestress_.error_mm;
     }
     m["kinetic_nJ"] = march_->kinetic_nJ();
     m["stored_nJ"] = march_->stored_nJ();

@@ -273,11 +273,34 @@ class Builder {
     mesh.fibre1 = fibres.first;
     mesh.fibre2 = fibres.second;
     mesh.stiffness_factor.assign(mesh.shapes.size(), real("stiffness_factor"));
+    const auto law = std::make_shared<materials::SolidLaw>(material.solid_law());
+    if (!law->resists_volume_change() && !scene_.has("fluid"))  // the fluid inside keeps it
+      throw InputError(
+          "{}: law '{}' resists no change of volume: found volumetric = \"none\", split = \"modified\"; "
+          "expected volumetric = \"j-ln-j\" (or another form) with bulk_modulus_kPa, or split = \"full\"",
+          what_, material.law);
     const bool displacement = text("formulation") == "displacement" ||
                               material.volumetric.form == materials::Volumetric::Form::none;
     b.solid = std::make_shared<structure::Solid>(
-        std::move(mesh), std::make_shared<materials::SolidLaw>(material.solid_law()),
+        std::move(mesh), law,
         displacement ? structure::Formulation::displacement : structure::Formulation::mixed);
+  }
+
+  /// Of each beam.
+  Points depth_axes(const BodyMesh& mesh) const {
+    const Vec3 given = vector("depth_direction");
+    Points axes(mesh.lines.size(), given);
+    if (text("depth") == "constant") return axes;
+    if (!(given.norm() > 0)) throw InputError("{}: depth_direction is zero; expected an axis", what_);
+    const Vec3 axis = given.normalized(), point = vector("depth_point_mm");
+    for (std::size_t e = 0; e < axes.size(); ++e) {
+      const Vec3 d = 0.5 * (mesh.points[mesh.lines[e][0]] + mesh.points[mesh.lines[e][1]]) - point;
+      axes[e] = d - axis.dot(d) * axis;
+      if (!(axes[e].norm() > 0))
+        throw InputError("{}: depth = \"radial\", but beam {} lies on the axis", what_, e);
+      axes[e].normalize();
+    }
+    return axes;
   }
 
   void make_beams(BuiltBody& b) const {
@@ -287,7 +310,7 @@ class Builder {
     const double width = positive_real("width_mm"), depth = positive_real("depth_mm");
     mesh.width_mm.assign(mesh.elements.size(), width);
     mesh.depth_mm.assign(mesh.elements.size(), depth);
-    mesh.depth_axis.assign(mesh.elements.size(), vector("depth_direction"));
+    mesh.depth_axis = depth_axes(b.mesh);
     if (real("torsion_mm4") > 0) mesh.torsion_mm4.assign(mesh.elements.size(), real("torsion_mm4"));
     if (real("shear_area_mm2") > 0) mesh.shear_area_mm2.assign(mesh.elements.size(), real("shear_area_mm2"));
     b.half_thickness.assign(b.mesh.points.size(), 0.5 * std::min(width, depth));

@@ -85,11 +85,18 @@ class Contacts {
         nodes.push_back({body.at.offset + a,
                          e_.real("offset_mm") < 0 ? body.half_thickness[a] : e_.real("offset_mm"), area[a]});
     const double stiffness = units::pa_per_kPa * e_.real("stiffness_kPa_per_mm");
-    Motion motion;
-    motion.factor = e_.table(TimeTable::ramp(s_.end_s));
-    motion.displacement = e_.vector("displacement_mm");
+    const TimeTable factor = s_.factor_of(e_, TimeTable::ramp(s_.end_s));
+    const RigidMotion whole{e_.vector("displacement_mm"), e_.real("radius_change_mm")};
+    const RigidShape form = shape();
+    const bool round = form.kind == RigidShape::Kind::sphere || form.kind == RigidShape::Kind::cylinder;
+    if (whole.growth != 0 && !(round && form.radius + whole.growth > 0))
+      e_.fail(fmt::format("radius_change_mm is {}; expected a sphere or cylinder whose radius stays positive",
+                          whole.growth));
     auto term = std::make_shared<RigidSurfaceContact>(
-        e_.text("name"), shape(), [motion](double t) { return motion.place(Vec3::Zero(), t); },
+        e_.text("name"), form,
+        [factor, whole](double t) -> RigidMotion {
+          return {factor(t) * whole.displacement, factor(t) * whole.growth};
+        },
         std::move(nodes), contact::SurfaceParameters{stiffness, e_.real("friction"), stiffness});
     s_.surfaces[e_.text("name")] = term;
     s_.add_term(e_.text("name"), std::move(term), e_.what());

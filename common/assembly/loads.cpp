@@ -19,7 +19,7 @@ using Term = std::shared_ptr<structure::ForceTerm>;
 class Loads {
  public:
   Loads(Scene& scene, const Entry& e, const TimeTable& standard)
-      : s_(scene), e_(e), factor_(e.table(standard)) {}
+      : s_(scene), e_(e), factor_(scene.factor_of(e, standard)) {}
 
   void add() {
     const std::string& kind = e_.text("kind");

@@ -21,6 +21,7 @@ namespace valsalva::assembly {
 
 class March {
  public:
+  explicit March(Scene& scene) : scene_(scene) {}
   virtual ~March() = default;
   /// NumericalFailure names the place.
   virtual void step() = 0;
@@ -33,6 +34,10 @@ class March {
   virtual std::map<std::string, double> metrics() const = 0;
   long steps() const { return steps_; }
 
+  /// Dynamic solvers, before the first step: from this equilibrium, which make_search found with a scene of
+  /// the same bodies, at time 0 and with the velocities that the bodies have.
+  void start_from(const structure::Snapshot& equilibrium, double stored_nJ);
+
   /// Everything that a bitwise continuation needs.
   structure::Snapshot save() const;
   void restore(const structure::Snapshot& snapshot);
@@ -40,10 +45,14 @@ class March {
  protected:
   virtual structure::Snapshot save_solver() const = 0;
   virtual void restore_solver(const structure::Snapshot& snapshot) = 0;
+  Scene& scene_;
   long steps_ = 0;
+  double stored_at_start_ = 0;  // of what start_from put there
 };
 
 std::unique_ptr<March> make_march(const Case& scene, Scene& built);
+/// Static, whatever [dynamics] asks for: for a scene of Course::to_start.
+std::unique_ptr<March> make_search(const Case& scene, Scene& built);
 
 /// The largest explicit step that is stable at the scene's present state, before any safety; infinite where
 /// nothing has a stiffness.

@@ -9,13 +9,20 @@ namespace valsalva::assembly {
 
 bool wants_prestress(const Case& scene) {
   if (scene.text("dynamics.prestress") == "none") return false;
-  const std::string& solver = scene.text("dynamics.solver");
-  if (solver != "static" && solver != "quasi_static")
-    throw InputError(
-        "{}: dynamics.prestress = \"{}\" with dynamics.solver = \"{}\"; expected \"static\" or "
-        "\"quasi_static\"",
-        scene.file().string(), scene.text("dynamics.prestress"), solver);
+  for (const Case& body : scene.entries("body"))
+    if (body.text("body.kind") == "rigid" && body.text("body.motion") == "free" &&
+        scene.text("dynamics.solver") != "quasi_static")
+      throw InputError(
+          "{}: dynamics.prestress = \"{}\" with the free rigid body '{}': the loaded shape is looked for by "
+          "Newton's method, which does not move it; expected solver = \"quasi_static\", or motion = "
+          "\"fixed\"",
+          scene.file().string(), scene.text("dynamics.prestress"), body.text("body.name"));
   return true;
+}
+
+bool loaded_at_the_end(const Case& scene) {
+  const std::string& solver = scene.text("dynamics.solver");
+  return solver == "static" || solver == "quasi_static";
 }
 
 double distance_from_given(const Scene& scene) {
@@ -32,6 +39,7 @@ Prestress find_stress_free(const Case& scene, const std::function<void(int, doub
   constexpr double smallest_relaxation = 1e-3;
   const double tolerance = scene.real("dynamics.prestress_tolerance_mm");
   const int most = static_cast<int>(scene.integer("dynamics.prestress_iterations"));
+  const bool at_end = loaded_at_the_end(scene);
   Prestress best;
   References trial, miss;  // the shape in hand, and by how far its loaded shape misses the given one
   double relaxation = 1;
@@ -39,9 +47,11 @@ Prestress find_stress_free(const Case& scene, const std::function<void(int, doub
     double error = std::numeric_limits<double>::infinity();
     std::string failure;
     References found;
+    structure::Snapshot equilibrium;
+    double stored = 0;
     try {
-      Scene built = compose(scene, trial);
-      const auto march = make_march(scene, built);
+      Scene built = compose(scene, trial, {}, at_end ? Course::whole : Course::to_start);
+      const auto march = at_end ? make_march(scene, built) : make_search(scene, built);
       while (!march->finished()) march->step();
       error = distance_from_given(built);
       for (const BuiltBody& body : built.bodies) {
@@ -49,6 +59,10 @@ Prestress find_stress_free(const Case& scene, const std::function<void(int, doub
         Points& off = found[body.name] = body.places(built.system->state);
         for (std::size_t a = 0; a < off.size(); ++a) off[a] -= body.imaged[a];
         trial[body.name] = body.mesh.points;
+      }
+      if (!at_end) {
+        equilibrium = march->save();
+        stored = march->stored_nJ();
       }
     } catch (const Error& e) {
       if (k == 1) throw;
@@ -59,6 +73,8 @@ Prestress find_stress_free(const Case& scene, const std::function<void(int, doub
     if (k == 1 || error < best.error_mm) {
       best.error_mm = error;
       best.reference = trial;
+      best.equilibrium = std::move(equilibrium);
+      best.stored_nJ = stored;
       miss = std::move(found);
       if (error <= tolerance) return best;
       relaxation = std::min(1.0, 1.5 * relaxation);

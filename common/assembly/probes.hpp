@@ -6,6 +6,8 @@
 //   reaction                N      sum of the forces by which a support holds the body
 //   reaction_moment         N_mm   the same of their moments about a point, moments on beam nodes included
 //   contact_force           N      sum of the forces of a contact pair on its first body
+//   of these forces and of displacement, position and velocity also the radial component: outwards from an
+//   axis, node by node (displacement: the change of the distance from it)
 //   contact_area            mm2    area of the nodes that touch a rigid surface
 //   penetration             mm     largest overlap with a rigid surface, or of two bodies' contact distance
 //   energies                nJ     kinetic: of all; stored: of all, or of one body, tie, tether or pair
@@ -45,9 +47,12 @@ class Probes {
     std::optional<Vec3> point;
   };
   struct Present;
+  /// From the axis of radial components: the distance as a vector, and its direction (zero on the axis).
+  static Vec3 from_axis(const Vec3& x, const Probe& probe);
+  static Vec3 outward(const Vec3& x, const Probe& probe);
   double value(const Probe& probe, const Scene& scene, Present& present, double kinetic_nJ) const;
   static void check(const Probe& probe, const Scene& built, const std::string& what);
-  double of_vectors(const Probe& probe, const Points& vectors) const;
+  double of_nodes(const Probe& probe, const Scene& scene) const;
   double of_elements(const Probe& probe, const Scene& scene) const;
   double of_layers(const Probe& probe, const BuiltBody& body, const structure::Configuration& now) const;
   double of_solid(const Probe& probe, const BuiltBody& body, const structure::Configuration& now) const;

@@ -4,7 +4,7 @@
 
 namespace valsalva::assembly {
 
-RigidShape::Near RigidShape::near(const Vec3& x) const {
+RigidShape::Near RigidShape::near(const Vec3& x, double growth) const {
   Vec3 d = x - point;
   if (kind == Kind::plane) return {direction.dot(d), direction};
   if (kind == Kind::level_set) {
@@ -16,16 +16,16 @@ RigidShape::Near RigidShape::near(const Vec3& x) const {
   if (kind == Kind::cylinder) d -= direction.dot(d) * direction;
   const double r = d.norm(), sign = inside ? -1 : 1;
   const Vec3 normal = r > 0 ? Vec3(sign / r * d) : Vec3(Vec3::Zero());
-  return {sign * (r - radius), normal};
+  return {sign * (r - radius - growth), normal};
 }
 
 RigidSurfaceContact::RigidSurfaceContact(std::string name, RigidShape shape,
-                                         std::function<Vec3(double)> displacement,
+                                         std::function<RigidMotion(double)> motion,
                                          std::vector<contact::SurfaceNode> nodes,
                                          contact::SurfaceParameters parameters)
     : name_(std::move(name)),
       shape_(shape),
-      displacement_(std::move(displacement)),
+      motion_(std::move(motion)),
       nodes_(std::move(nodes)),
       parameters_(parameters),
       tethers_(nodes_.size(), parameters.friction, parameters.tangent_Pa_per_mm) {}
@@ -33,8 +33,9 @@ RigidSurfaceContact::RigidSurfaceContact(std::string name, RigidShape shape,
 RigidSurfaceContact::Touch RigidSurfaceContact::touch(std::size_t i,
                                                       const structure::Configuration& now) const {
   Touch t;
-  t.place = now.x[nodes_[i].node] - displacement_(now.time_s);
-  const RigidShape::Near near = shape_.near(t.place);
+  const RigidMotion motion = motion_(now.time_s);
+  t.place = now.x[nodes_[i].node] - motion.displacement;
+  const RigidShape::Near near = shape_.near(t.place, motion.growth);
   t.overlap = nodes_[i].radius_mm - near.distance;
   t.normal = near.normal;
   t.force = std::max(0.0, parameters_.normal_Pa_per_mm * nodes_[i].area_mm2 * t.overlap);

@@ -1,5 +1,5 @@
 // Contact of nodes with a rigid surface that may be moved, analytic or given by a level set, with Coulomb
-// friction.
+// friction. Spheres and cylinders may change their radius (crimper, balloon).
 //
 // Distance d(x) on the free side: plane n.(x - p); sphere |x - p| - R, cylinder |(1 - a a)(x - p)| - R (signs
 // reversed for bodies inside), level set phi(x). Overlap g = r - d, energy A K_n g^2 / 2, force A K_n g n;
@@ -29,12 +29,19 @@ struct RigidShape {
     double distance;
     Vec3 normal;  ///< to the free side; zero on the axis or centre
   };
-  Near near(const Vec3& x) const;
+  /// The radius is larger by `growth`.
+  Near near(const Vec3& x, double growth = 0) const;
+};
+
+/// Of a surface over time: where it has gone and by how much its radius has grown.
+struct RigidMotion {
+  Vec3 displacement = Vec3::Zero();
+  double growth = 0;
 };
 
 class RigidSurfaceContact : public structure::ForceTerm {
  public:
-  RigidSurfaceContact(std::string name, RigidShape shape, std::function<Vec3(double)> displacement,
+  RigidSurfaceContact(std::string name, RigidShape shape, std::function<RigidMotion(double)> motion,
                       std::vector<contact::SurfaceNode> nodes, contact::SurfaceParameters parameters);
   std::string name() const override { return name_; }
   void begin_step(const structure::Configuration& now, double dt_s) override;
@@ -58,7 +65,7 @@ class RigidSurfaceContact : public structure::ForceTerm {
 
   std::string name_;
   RigidShape shape_;
-  std::function<Vec3(double)> displacement_;
+  std::function<RigidMotion(double)> motion_;
   std::vector<contact::SurfaceNode> nodes_;
   contact::SurfaceParameters parameters_;
   contact::Tethers tethers_;

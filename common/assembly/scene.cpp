@@ -19,10 +19,11 @@ using structure::System;
 
 class Composer {
  public:
-  Composer(const Case& scene, const References& references, std::optional<double> end_s)
+  Composer(const Case& scene, const References& references, std::optional<double> end_s, Course course)
       : case_(scene), references_(references) {
     s_.system = std::make_unique<System>();
     s_.end_s = end_s.value_or(scene.real("dynamics.end_s"));
+    s_.course = course;
     const std::string& solver = scene.text("dynamics.solver");
     static_ = !end_s && (solver == "static" || solver == "quasi_static");
   }
@@ -202,7 +203,7 @@ class Composer {
 
   Motion motion_of(const Entry& e, const Support& s) const {
     Motion m;
-    m.factor = e.table(TimeTable::ramp(s_.end_s));
+    m.factor = s_.factor_of(e, TimeTable::ramp(s_.end_s));
     m.displacement = e.vector("displacement_mm");
     m.turn_rad = e.real("turn_deg") * M_PI / 180;
     m.turn_axis = e.direction("turn_axis");
@@ -271,6 +272,11 @@ class Composer {
 
 }  // namespace
 
+TimeTable Scene::factor_of(const Entry& entry, const TimeTable& standard) const {
+  const TimeTable given = entry.table(standard);
+  return course == Course::whole ? given : TimeTable::ramp(end_s, given(0));
+}
+
 void Scene::add_term(const std::string& name, std::shared_ptr<structure::ForceTerm> term,
                      const std::string& what) {
   if (!named.emplace(name, term).second)
@@ -302,8 +308,8 @@ const std::vector<int>& Scene::set(const std::string& name, const std::string& w
                    known.empty() ? "none is defined" : known);
 }
 
-Scene compose(const Case& scene, const References& references, std::optional<double> end_s) {
-  return Composer(scene, references, end_s).compose();
+Scene compose(const Case& scene, const References& references, std::optional<double> end_s, Course course) {
+  return Composer(scene, references, end_s, course).compose();
 }
 
 double kinetic_of(const Scene& scene) {

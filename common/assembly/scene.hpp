@@ -18,6 +18,12 @@
 
 namespace valsalva::assembly {
 
+class Entry;
+
+/// What loads and motions do over the run: what the case says, or grow from nothing to what they are at time
+/// 0.
+enum class Course { whole, to_start };
+
 struct Scene {
   std::unique_ptr<structure::System> system;  ///< at its start: the reference shapes
   std::vector<BuiltBody> bodies;
@@ -34,6 +40,10 @@ struct Scene {
   std::vector<std::shared_ptr<structure::RigidBody>> rigid;           ///< that move freely
   double contact_reach_mm = std::numeric_limits<double>::infinity();  ///< least contact distance of bodies
   double end_s = 1;
+  Course course = Course::whole;
+
+  /// The factor of a load or motion over time: the entry's table, `standard` where it has none.
+  TimeTable factor_of(const Entry& entry, const TimeTable& standard) const;
 
   /// InputError with `what` when the name is taken.
   void add_term(const std::string& name, std::shared_ptr<structure::ForceTerm> term, const std::string& what);
@@ -48,7 +58,8 @@ using References = std::map<std::string, Points>;
 
 /// InputError that names the file, the entry, the key, what was found and what is expected. end_s: end of the
 /// run in a scene with fluid; otherwise [dynamics] says so.
-Scene compose(const Case& scene, const References& references = {}, std::optional<double> end_s = {});
+Scene compose(const Case& scene, const References& references = {}, std::optional<double> end_s = {},
+              Course course = Course::whole);
 
 /// Of nodes that are not held, rotations and free rigid bodies, nJ.
 double kinetic_of(const Scene& scene);

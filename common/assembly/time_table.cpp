@@ -10,8 +10,8 @@ TimeTable TimeTable::constant(double value) {
   return {{0}, {value}, ""};
 }
 
-TimeTable TimeTable::ramp(double end_s) {
-  return {{0, end_s}, {0, 1}, ""};
+TimeTable TimeTable::ramp(double end_s, double last) {
+  return {{0, end_s}, {0, last}, ""};
 }
 
 TimeTable::TimeTable(std::vector<double> time_s, std::vector<double> factor, const std::string& what)

@@ -36,6 +36,11 @@ class SolidLaw : public PlaneLaw {
   const ElasticLaw& law() const { return *law_; }
   Split split() const { return split_; }
   double bulk_modulus_Pa() const { return volumetric_.modulus_Pa; }
+  /// False: the law sees shape change only and there is no U(J); a body of it needs another that keeps its
+  /// volume.
+  bool resists_volume_change() const {
+    return split_ == Split::full || volumetric_.form != Volumetric::Form::none;
+  }
 
   /// Psi, S and dS/dE.
   ElasticResponse respond(const Mat3& c, const Fibres& fibres, double factor, Derivatives wanted) const;

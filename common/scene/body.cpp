@@ -43,9 +43,10 @@ void declare_mesh_keys(Schema& schema) {
   schema.real("body.commissure_mm", 0, not_negative(), "leaflet, crown: straight post above the attachment");
   schema.real("body.free_edge_gap_mm", 0, not_negative(),
               "leaflet: distance of the free edge's middle from the axis, at rest");
-  schema.real("body.free_edge_exponent", 0, {0, 10},
-              "leaflet: 0: its free edge is bowed to a circle, at rest; p > 0: it follows the tube beside the "
-              "commissures and turns inwards as cos^p");
+  schema.real(
+      "body.free_edge_exponent", 0, {0, 10},
+      "leaflet: 0: its free edge is bowed to a circle, at rest; p > 0: it follows the tube beside the "
+      "commissures and turns inwards as cos^p");
   schema.real("body.free_edge_peak_mm", 0, not_negative(), "leaflet: rise of the free edge in its middle");
   schema.real("body.leaflet_half_angle_deg", 60, {10, 60},
               "leaflet, crown: azimuth from its middle to a commissure; below 60: room for posts");
@@ -112,7 +113,11 @@ void declare_body(Schema& schema) {
   schema.text("body.thickness_field", "", "Node data of the file (gmsh view) that holds the thickness in mm");
   schema.real("body.width_mm", 0, not_negative(), "Beams: section across depth_direction");
   schema.real("body.depth_mm", 0, not_negative(), "Beams: section along depth_direction");
-  schema.reals("body.depth_direction", {0, 0, 1}, 3, unlimited(), "Beams: direction of the depth");
+  schema.reals("body.depth_direction", {0, 0, 1}, 3, unlimited(), "Beams: direction of the depth, or axis");
+  schema.choice("body.depth", "constant", {"constant", "radial"},
+                "Beams: the depth points along depth_direction, or away from the axis along it through "
+                "depth_point_mm");
+  schema.reals("body.depth_point_mm", {0, 0, 0}, 3, unlimited(), "radial: a point of that axis");
   schema.real("body.torsion_mm4", 0, not_negative(), "Beams: torsion constant; 0: the rectangle's");
   schema.real("body.shear_area_mm2", 0, not_negative(),
               "Beams: area for shear, 5/6 of a rectangle's; 0: no shear flexibility");
@@ -237,6 +242,8 @@ void declare_contact_pair(Schema& schema) {
   schema.boolean("contact_pair.inside", false, "Is the body inside the sphere, cylinder or level set?");
   schema.reals("contact_pair.displacement_mm", {0, 0, 0}, 3, unlimited(),
                "Displacement of the rigid surface at factor 1");
+  schema.real("contact_pair.radius_change_mm", 0, unlimited(),
+              "Change of the radius of sphere or cylinder at factor 1");
   schema.reals("contact_pair.time_s", {}, 0, not_negative(), "Times of its factor table");
   schema.reals("contact_pair.factor", {}, 0, unlimited(),
                "Its values; empty: 0 at the start to 1 at the end");
@@ -274,9 +281,10 @@ void declare_dynamics(Schema& schema) {
   schema.integer("dynamics.max_iterations", 400000, {1, 100000000},
                  "quasi_static: most iterations a load step");
   schema.integer("dynamics.newton_iterations", 25, {2, 1000}, "static, implicit: before the step is halved");
-  schema.choice(
-      "dynamics.prestress", "none", {"none", "backward_displacement"},
-      "static solvers: is the given shape the loaded one, from which the stress-free shape is found?");
+  schema.choice("dynamics.prestress", "none", {"none", "backward_displacement"},
+                "Is the given shape the loaded one (static solvers: at the end; dynamic ones: at the start, "
+                "with the loads "
+                "of time 0), from which the stress-free shape is found?");
   schema.real("dynamics.prestress_tolerance_mm", 1e-3, positive(),
               "Largest distance of a node of the loaded shape from the given one");
   schema.integer("dynamics.prestress_iterations", 50, {1, 10000}, "Most equilibria on the way there");
@@ -300,11 +308,14 @@ void declare_probe(Schema& schema) {
       "contact_force, contact_area, penetration: contact pair; stored_energy: body, tie or pair, empty "
       "for all; momentum, angular_momentum: body, empty for all; stretch, von_mises, stress: body; "
       "volume: body, or volume load; pressure: volume load");
-  schema.choice("probe.component", "magnitude",
-                {"x", "y", "z", "magnitude", "direction", "xx", "yy", "zz", "xy", "yz", "zx", "principal_max",
-                 "principal_min", "mean", "fibre"},
-                "Component; direction: along probe.direction (of shells: as it moves with the sheet); of "
-                "stress (Cauchy): xx to mean, direction, fibre (of shells: the first family)");
+  schema.choice(
+      "probe.component", "magnitude",
+      {"x", "y", "z", "magnitude", "direction", "radial", "xx", "yy", "zz", "xy", "yz", "zx", "principal_max",
+       "principal_min", "mean", "fibre"},
+      "Component; direction: along probe.direction (of shells: as it moves with the sheet); radial: of "
+      "displacement, position, velocity, reaction, contact_force away from the axis through point_mm "
+      "along direction, node by node; of "
+      "stress (Cauchy): xx to mean, direction, fibre (of shells: the first family)");
   schema.choice(
       "probe.layer", "largest", {"largest", "bottom", "middle", "top", "bending"},
       "stretch, von_mises, stress of Kirchhoff shells: at this height; middle: the membrane stress; "
@@ -312,7 +323,8 @@ void declare_probe(Schema& schema) {
   schema.reals(
       "probe.point_mm", {}, 0, unlimited(),
       "stretch, von_mises, stress: at the element nearest to this point of the reference; empty: the "
-      "largest of the body; reaction_moment, angular_momentum: about this point; empty: the origin");
+      "largest of the body; reaction_moment, angular_momentum: about this point; radial: of the axis; empty: "
+      "the origin");
   schema.reals("probe.direction", {0, 0, 1}, 3, unlimited(), "For component = \"direction\"");
   schema.choice("probe.statistic", "mean", {"mean", "min", "max"}, "Over the nodes of the set");
 }

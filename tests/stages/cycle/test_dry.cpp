@@ -350,7 +350,12 @@ $EndElements
        {"not a closed surface"}},
       {box + "[[probe]]\nname = \"p\"\nquantity = \"stress\"\nof = \"box\"\n", {"component", "xx"}},
       {box + "[[probe]]\nname = \"p\"\nquantity = \"contact_force\"\nof = \"c\"\n", {"[[contact_pair]]"}},
-      {box + "[dynamics]\nprestress = \"backward_displacement\"\n", {"prestress", "quasi_static"}},
+      {"[[body]]\nname = \"ball\"\nkind = \"rigid\"\nmotion = \"free\"\nshape = \"sphere\"\nradius_mm = 1\n"
+       "divisions = [8, 4]\n[dynamics]\nprestress = \"backward_displacement\"\n",
+       {"prestress", "'ball'", "quasi_static"}},
+      {"[[body]]\nname = \"soft\"\nkind = \"solid\"\nshape = \"box\"\nsize_mm = [1, 1, 1]\n"
+       "divisions = [1, 1, 1]\nlaw = \"neo-hookean\"\nlaw_parameters = [\"mu_Pa = 1\"]\n",
+       {"'soft'", "'neo-hookean'", "volumetric", "bulk_modulus_kPa"}},
       {box + "[dynamics]\nsolver = \"newton\"\n", {"newton", "static"}},
       {box + "[dynamics]\nend_s = -1\n", {"end_s", "-1"}},
   };

@@ -136,6 +136,24 @@ TEST(Scene, ComposesBodiesSetsAndSupports) {
   EXPECT_NEAR(area, 2, 1e-12);
 }
 
+TEST(Scene, SolidsNeedResistanceToChangeOfVolume) {
+  const std::string block = R"(
+[[body]]
+name = "block"
+kind = "solid"
+shape = "box"
+size_mm = [1, 1, 1]
+divisions = [1, 1, 1]
+law = "neo-hookean"
+law_parameters = ["mu_Pa = 1e3"]
+)";
+  expect_refused(block,
+                 {"[[body]] 'block'", "'neo-hookean'", "volumetric", "bulk_modulus_kPa", "split"});
+  EXPECT_NO_THROW(compose(read(block + "split = \"full\"\n")));
+  EXPECT_NO_THROW(compose(read(block + "volumetric = \"quadratic\"\nbulk_modulus_kPa = 10\n")));
+  EXPECT_NO_THROW(compose(read(block + "[fluid]\n")));
+}
+
 // W of the fibres is k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1), once for each family.
 TEST(Scene, OneFamilyOfFibresCountsOnce) {
   const auto energy = [](const std::string& angles) {
@@ -343,4 +361,40 @@ TEST(TimeTable, IsLinearBetweenAndConstantOutside) {
   EXPECT_EQ(t(3), 5);
   EXPECT_EQ(t(9), 0);
   EXPECT_THROW(TimeTable({1, 1}, {0, 1}, "test"), InputError);
+}
+
+TEST(Scene, RadiiChangeOfRoundSurfacesOnly) {
+  const std::string pair = plate + "[[contact_pair]]\nname = \"tool\"\nbody = \"sheet\"\n";
+  expect_refused(pair + "surface = \"plane\"\nradius_change_mm = 1\n",
+                 {"'tool'", "radius_change_mm", "cylinder"});
+  expect_refused(pair + "surface = \"sphere\"\nradius_mm = 1\nradius_change_mm = -1\n", {"radius_change_mm"});
+  expect_refused(
+      plate +
+          "[[probe]]\nname = \"p\"\nquantity = \"reaction_moment\"\nof = \"tip\"\ncomponent = \"radial\"\n",
+      {"radial", "displacement"});
+}
+
+// Of a ring: the depth points outwards, the width along its axis.
+TEST(Scene, DepthOfBeamsFromAnAxis) {
+  const std::string ring = R"(
+[[body]]
+name = "ring"
+kind = "beams"
+shape = "arc"
+origin_mm = [3, 0, 1]
+radius_mm = 2
+divisions = [12]
+width_mm = 0.2
+depth_mm = 0.1
+young_kPa = 1
+depth = "radial"
+)";
+  const Scene s = compose(read(ring + "depth_point_mm = [3, 0, 0]\n"));
+  const auto& mesh = s.bodies[0].beams->mesh();
+  for (int e = 0; e < s.bodies[0].beams->elements(); ++e) {
+    const auto& ends = mesh.elements[e];
+    const Vec3 out = 0.5 * (mesh.reference[ends[0]] + mesh.reference[ends[1]]) - Vec3(3, 0, 1);
+    EXPECT_LT((mesh.depth_axis[e] - out.normalized()).norm(), 1e-12) << e;
+  }
+  expect_refused(ring + "depth_direction = [0, 0, 0]\n", {"'ring'", "depth_direction"});
 }

@@ -1,5 +1,6 @@
 // Stress of Kirchhoff shells as probes and as fields of the views, against closed forms.
 #include "run_case.hpp"
+#include "tables.hpp"
 
 using namespace valsalva;
 using test::CaseRun;
@@ -10,11 +11,6 @@ std::string stress_probe(const std::string& name, const std::string& layer, cons
                          const std::string& more) {
   return "[[probe]]\nname = \"" + name + "\"\nquantity = \"stress\"\nof = \"sheet\"\nlayer = \"" + layer +
          "\"\ncomponent = \"" + component + "\"\n" + more + "\n";
-}
-
-std::string held(const std::string& group, const std::string& hold) {
-  return "[[nodes]]\nname = \"" + group + "\"\nbody = \"sheet\"\nselect = \"group\"\ngroup = \"" + group +
-         "\"\n[[support]]\nname = \"" + group + "\"\nnodes = \"" + group + "\"\n" + hold + "\n";
 }
 
 }  // namespace
@@ -44,11 +40,9 @@ name = "inside"
 kind = "pressure"
 body = "sheet"
 pressure_kPa = 1e-3
-)" + held("start1", "hold = [\"symmetry\"]\nnormal = [0, 1, 0]") +
-      held("end1", "hold = [\"symmetry\"]\nnormal = [1, 0, 0]") +
-      held("start2", "hold = [\"symmetry\"]\nnormal = [0, 0, 1]") +
-      held("end2", "hold = [\"symmetry\"]\nnormal = [0, 0, 1]") +
-      stress_probe("hoop", "middle", "principal_max", "") +
+)" + test::symmetry("sheet", "start1", "[0, 1, 0]") +
+      test::symmetry("sheet", "end1", "[1, 0, 0]") + test::symmetry("sheet", "start2", "[0, 0, 1]") +
+      test::symmetry("sheet", "end2", "[0, 0, 1]") + stress_probe("hoop", "middle", "principal_max", "") +
       stress_probe("fibre", "middle", "fibre", "point_mm = [7, 7, 2]") +
       stress_probe("across", "middle", "direction", "direction = [1, -1, 0]\npoint_mm = [7, 7, 2]") +
       stress_probe("axis", "middle", "zz", "point_mm = [7, 7, 2]") +
@@ -78,7 +72,7 @@ thickness_mm = 0.1
 law = "linear"
 young_kPa = 1200
 poisson = 0
-)" + held("start1", "hold = [\"all\"]") +
+)" + test::held("sheet", "start1", "[\"all\"]") +
       R"(
 [[nodes]]
 name = "end"
