@@ -21,6 +21,7 @@ SINCE    ?=
 COHORT   ?= pipelines/cohorts/anatomies.csv
 
 PIPELINE = python3 pipelines/pipeline.py
+STUDY    = /usr/bin/python3
 OPTIONS  = $(if $(FIDELITY),--fidelity $(FIDELITY)) $(if $(NP),--ranks $(NP)) $(if $(FORCE),--force) \
            $(if $(RESUME),--resume) $(foreach pair,$(SET),--set $(pair))
 STAGES   = segment mesher stent crimp deploy cycle report
@@ -57,10 +58,10 @@ bench: build
 	python3 pipelines/bench.py
 
 tradeoff: build
-	for study in pipelines/tradeoff_*.py; do python3 $$study || exit; done
+	for study in pipelines/tradeoff_*.py; do $(STUDY) $$study || exit; done
 
 extremes: build
-	for study in pipelines/extremes_*.py; do python3 $$study || exit; done
+	for study in pipelines/extremes_*.py; do $(STUDY) $$study || exit; done
 
 studies: build
 	python3 pipelines/study_taylor_green.py --cells 32 64 96 128 --schemes conserving4 upwind3 $(if $(NP),--ranks $(NP))

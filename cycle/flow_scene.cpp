@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <cmath>
+#include <optional>
 
 #include "core/errors.hpp"
 #include "core/log.hpp"
@@ -17,6 +18,8 @@ namespace valsalva::cycle {
 namespace {
 
 using flow_scene::FlowScene;
+
+constexpr long steps_between_copies = 200;
 
 state::State state_of(const StageContext& context, const FlowScene& scene) {
   state::State out = state::begin(context, scene.time_s(), scene.steps());
@@ -104,9 +107,15 @@ void run_flow_scene(StageContext& context) {
   Progress progress("cycle", scene.end_s(), context.speaks);
   progress.start_at(scene.time_s());
   state::CheckpointClock clock(context);
+  // Of a scene without bodies, which has no way back of its own, until there is a checkpoint in a file.
+  std::optional<state::State> copy;
+  bool copying = !scene.bodies(), stepping = false;
   try {
     while (!scene.finished() && !(context.steps && scene.steps() - first >= *context.steps)) {
+      if (copying && (scene.steps() - first) % steps_between_copies == 0) copy = state_of(context, scene);
+      stepping = true;
       scene.step();
+      stepping = false;
       if (scene.row_due()) scene.add_row();
       progress.update(scene.time_s(),
                       fmt::format("t = {:.4g} s, dt = {:.3g} s", scene.time_s(), scene.step_s()));
@@ -114,13 +123,24 @@ void run_flow_scene(StageContext& context) {
         write_tables(context, scene);
         state::stop(context, state_of(context, scene));
       }
-      if (clock.due(context.comm)) save(context, scene);
+      if (clock.due(context.comm)) {
+        save(context, scene);
+        copying = false;
+        copy.reset();
+      }
     }
   } catch (const NumericalFailure& failure) {
     if (mpi::rank(context.comm) == 0) scene.history().write(context.run.file("history.csv"));
+    const long step = scene.steps();
+    const double time_s = scene.time_s();
+    if (stepping && scene.bodies())
+      state::save(context, state_of(context, scene));  // the rescue has gone back to it
+    else if (copy)
+      state::save(context, *copy);
+    MPI_Barrier(context.comm);
     const auto last = context.run.latest_state();
     throw NumericalFailure(
-        "{}. t = {:.6g} s, step {}. {}", failure.what(), scene.time_s(), scene.steps(),
+        "{}. t = {:.6g} s, step {}. {}", failure.what(), time_s, step,
         last ? "The last good state is " + last->string() : std::string("No state was written before"));
   }
   context.summary.metrics = scene.metrics();

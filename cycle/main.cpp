@@ -19,6 +19,7 @@
 #include "core/units.hpp"
 #include "dry.hpp"
 #include "flow_scene.hpp"
+#include "measured.hpp"
 #include "results.hpp"
 #include "scene/scene.hpp"
 #include "state/checkpoint.hpp"
@@ -52,6 +53,25 @@ void say_scene(const Inputs& in, const Parameters& p, const Simulation& simulati
           "device.leaflet_edge_mm or mesh.leaflet_edge_mm");
   }
   if (in.skirt) log::info("gap between skirt and wall: {:.1f} mm2", simulation.recorder().gap_area_mm2());
+}
+
+Expectation expectation_of(const Case& scene, const Parameters& p, int ranks) {
+  Expectation expected = expect(measured_beats(), kind_of_valve(scene), p.h, p.end_s, ranks);
+  if (has_test_section(scene)) expected.basis += "; of valves in a test section none was measured";
+  return expected;
+}
+
+/// The band of every figure of the beat that has one: where the value at h = 0 is likely to lie.
+void state_accuracy(const StageContext& context, Summary& s, const Parameters& p) {
+  const Expectation expected = expectation_of(context.scene, p, s.ranks);
+  for (const auto& [figure, error] : expected.error_pct) {
+    const auto found = s.metrics.find(figure);
+    if (found == s.metrics.end()) continue;
+    const double value = found->second, reach = 0.01 * error * std::abs(value);
+    s.extra["accuracy"][figure] = fmt::format("{:.4g}, likely {:.3g} to {:.3g} ({:.2g} % either way)", value,
+                                              value - reach, value + reach, error);
+  }
+  if (s.extra.contains("accuracy")) s.extra["accuracy"]["basis"] = expected.basis;
 }
 
 void run(StageContext& context) {
@@ -89,6 +109,7 @@ void run(StageContext& context) {
                            context.run.state_path(simulation.steps()).string());
   }
   summarise(context.summary, in, p, simulation);
+  state_accuracy(context, context.summary, p);
   save(context, in, simulation, simulation.finished());
 }
 
@@ -96,15 +117,8 @@ Estimate estimate(const Case& scene, int ranks) {
   if (is_flow_scene(scene)) return estimate_flow_scene(scene, ranks);
   if (!has_test_section(scene) && is_dry(scene)) return estimate_dry(scene);
   const Parameters p = read_parameters(scene);
-  // docs/cycle.md: mean step of a beat about 3e-5 h^1.4, one core 0.06 microseconds a cell and step, and
-  // 4.6 ms for leaflets at h = 1 mm (their nodes are as 1 / h^2).
-  const double volume = 40.0 * 40 * 60, cells = volume / std::pow(p.h, 3);
-  const double step_s = 3e-5 * std::pow(p.h, 1.4);
-  const double per_step = 0.06e-6 * cells + 4.6e-3 / (p.h * p.h);
-  return {p.end_s / step_s * per_step / (ranks > 1 ? 1.6 : 1.0), 200 + 1.2e-3 * cells,
-          "first order at walls and leaflets: orifice areas to about a cell's width all round, gradients "
-          "20-40 % at "
-          "draft, 10-20 % at standard (estimated from the mask's thickness, not measured)"};
+  const Expectation expected = expectation_of(scene, p, ranks);
+  return {expected.wall_s, expected.memory_MiB, in_words(expected)};
 }
 
 void check(const Case& scene) {

@@ -113,18 +113,21 @@ void beat_figures(Summary& s, const Inputs& in, const Parameters& p, const Simul
 
   // Closed and holding: late diastole, the last fifth of the beat.
   const double hold_from = series.time_s.back() - 0.2 * p.circulation.period_s;
-  double leak = 0, drop = 0, least_orifice = goa, time = 0;
-  const std::vector<double> orifice = part(history, "orifice_cm2", w);
+  double leak = 0, beside = 0, drop = 0, least_orifice = goa, time = 0;
+  const std::vector<double> orifice = part(history, "orifice_cm2", w),
+                            paravalvular = part(history, "q_paravalvular_mL_per_s", w);
   for (std::size_t i = 1; i < series.time_s.size(); ++i) {
     least_orifice = std::min(least_orifice, orifice[i]);
     if (series.time_s[i] < hold_from) continue;
     const double dt = series.time_s[i] - series.time_s[i - 1];
     leak -= series.flow[i] * dt;
+    beside -= paravalvular[i] * dt;
     drop += (series.downstream_Pa[i] - series.upstream_Pa[i]) * dt;
     time += dt;
   }
   if (!(time > 0)) return;
   m["diastolic_leak_mL_per_s"] = leak / time / mm3_per_mL;
+  if (in.skirt) m["diastolic_transvalvular_leak_mL_per_s"] = leak / time / mm3_per_mL - beside / time;
   m["diastolic_pressure_difference_mmHg"] = drop / time / pa_per_mmHg;
   const double projected = std::numbers::pi * radius * radius / units::mm2_per_cm2;
   s.checks["valve_opened_orifice_cm2"] = {goa, 0.1 * projected, goa >= 0.1 * projected};
@@ -189,7 +192,9 @@ void summarise(Summary& s, const Inputs& in, const Parameters& p, const Simulati
   s.simulated_s = simulation.time_s();
   if (history.rows() == 0) return;
   s.metrics["max_cfl"] = largest(history.column("max_cfl"));
+  s.metrics["cells"] = static_cast<double>(simulation.flow().grid().all_cells());
   if (in.leaflets) {
+    s.metrics["leaflet_nodes"] = static_cast<double>(in.leaflets->points.size());
     s.metrics["largest_law_exponent"] = largest(history.column("law_exponent"));
     if (s.metrics["largest_law_exponent"] > 6)
       s.notes["tissue law"] =

@@ -5,6 +5,7 @@
 
 #include "core/errors.hpp"
 #include "core/log.hpp"
+#include "place.hpp"
 
 namespace valsalva::cycle {
 
@@ -60,7 +61,7 @@ void Simulation::step() {
   try {
     advance();
   } catch (const NumericalFailure& failure) {
-    const std::string why = failure.what();
+    const std::string why = fmt::format("{} ({})", failure.what(), worst_place(*flow_, system_->shell()));
     rescue_.go_back(why, *system_, [&](const state::State& copy) { return_to(copy); });
     log::warn("back to t = {:.5f} s, steps {:.2g} times as large: {}", time_s_, system_->caution(), why);
   }

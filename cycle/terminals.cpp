@@ -14,6 +14,9 @@ using namespace circulation;
 // An open valve of about 1.7 cm2: only the start of the beat depends on it.
 constexpr double ideal_valve_resistance = 0.02 * units::resistance_per_mmHg_s_per_mL;
 
+constexpr double lag_until = 0.25, share_of_inertance = 0.5, flow_probe = 1000;
+constexpr std::size_t own_numbers = 5;
+
 double smooth(double s) {
   s = std::clamp(s, 0.0, 1.0);
   return s * s * (3 - 2 * s);
@@ -22,7 +25,7 @@ double smooth(double s) {
 }  // namespace
 
 Terminals::Terminals(const CirculationParameters& p, double initialisation_s, double inertance)
-    : parameters_(p), initialisation_s_(initialisation_s) {
+    : parameters_(p), initialisation_s_(initialisation_s), inertance_(inertance) {
   const bool heart = p.upstream == Upstream::heart, windkessel = p.downstream == Downstream::windkessel;
   double stored = p.aortic_Pa;
   low_start_Pa_ = p.end_diastolic_Pa;
@@ -61,22 +64,33 @@ Terminals::Terminals(const CirculationParameters& p, double initialisation_s, do
 }
 
 void Terminals::advance(double time_s, double dt_s, double low_flow, double high_flow) {
-  if (time_s < initialisation_s_) {
-    const double share = smooth((time_s + dt_s) / initialisation_s_);
-    const double low_resistance = heart_ ? parameters_.heart.outflow_resistance : 0;
-    const double high_resistance =
-        parameters_.downstream == Downstream::windkessel   ? parameters_.windkessel.characteristic_resistance
-        : parameters_.downstream == Downstream::resistance ? parameters_.outlet_resistance
-                                                           : 0;
-    low_Pa_ = share * low_start_Pa_ - low_resistance * low_flow;
-    high_Pa_ = share * high_start_Pa_ + high_resistance * high_flow;
-    return;
-  }
-  const double beat_time = time_s - initialisation_s_;
-  low_->advance(beat_time, dt_s, -low_flow);
-  high_->advance(beat_time, dt_s, high_flow);
-  low_Pa_ = low_->pressure();
-  high_Pa_ = high_->pressure();
+  const bool beating = time_s >= initialisation_s_;
+  const double share = beating ? 1 : smooth((time_s + dt_s) / initialisation_s_);
+  const auto meet = [&](circulation::Terminal& terminal, double resistance, double start, double flow,
+                        double last_flow, double before) {
+    const std::vector<double> kept = terminal.save();
+    const auto answer = [&](double inflow) {
+      if (!beating) return share * start + resistance * inflow;
+      terminal.restore(kept);
+      terminal.advance(time_s - initialisation_s_, dt_s, inflow);
+      return terminal.pressure();
+    };
+    const double plain = answer(flow), slope = (answer(flow + flow_probe) - plain) / flow_probe;
+    const double way = dt_s / (share_of_inertance * inertance_);  // mm3/s by 1 Pa
+    if (!(way * slope > lag_until)) return answer(flow);
+    const double carried_on = last_dt_s_ > 0 ? dt_s / last_dt_s_ * (flow - last_flow) : 0;
+    return answer(flow + (carried_on + way * (before - plain)) / (1 + way * slope));
+  };
+  const double low_resistance = heart_ ? parameters_.heart.outflow_resistance : 0;
+  const double high_resistance =
+      parameters_.downstream == Downstream::windkessel   ? parameters_.windkessel.characteristic_resistance
+      : parameters_.downstream == Downstream::resistance ? parameters_.outlet_resistance
+                                                         : 0;
+  low_Pa_ = meet(*low_, low_resistance, low_start_Pa_, -low_flow, last_low_, low_Pa_);
+  high_Pa_ = meet(*high_, high_resistance, high_start_Pa_, high_flow, last_high_, high_Pa_);
+  last_low_ = -low_flow;
+  last_high_ = high_flow;
+  last_dt_s_ = dt_s;
 }
 
 double Terminals::ventricular_pressure() const {
@@ -85,7 +99,7 @@ double Terminals::ventricular_pressure() const {
 }
 
 std::vector<double> Terminals::save() const {
-  std::vector<double> saved{low_Pa_, high_Pa_};
+  std::vector<double> saved{low_Pa_, high_Pa_, last_low_, last_high_, last_dt_s_};
   for (const double v : low_->save()) saved.push_back(v);
   for (const double v : high_->save()) saved.push_back(v);
   return saved;
@@ -93,13 +107,17 @@ std::vector<double> Terminals::save() const {
 
 void Terminals::restore(const std::vector<double>& saved) {
   const std::size_t low = low_->save().size(), high = high_->save().size();
-  if (saved.size() != 2 + low + high)
+  if (saved.size() != own_numbers + low + high)
     throw InputError("the state's circulation has {} numbers, this case's needs {}", saved.size(),
-                     2 + low + high);
+                     own_numbers + low + high);
   low_Pa_ = saved[0];
   high_Pa_ = saved[1];
-  low_->restore({saved.begin() + 2, saved.begin() + 2 + low});
-  high_->restore({saved.begin() + 2 + low, saved.end()});
+  last_low_ = saved[2];
+  last_high_ = saved[3];
+  last_dt_s_ = saved[4];
+  const auto of_low = saved.begin() + own_numbers, of_high = of_low + static_cast<long>(low);
+  low_->restore({of_low, of_high});
+  high_->restore({of_high, saved.end()});
 }
 
 }  // namespace valsalva::cycle

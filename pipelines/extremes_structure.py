@@ -17,46 +17,11 @@ import time
 from pathlib import Path
 
 import structure_runs as runs
+from extremes import FOLDER, Extremes
 from tradeoff_structure import SOLID, TISSUE, strip, value
 
-FOLDER = runs.ROOT / "runs" / "extremes"
-ACCURATE = 0.02
-ROWS = []
-
-
-def note(extreme, series, at, result, error=None, remark=""):
-    """A value of a series that is pushed from harmless to extreme; series None: a row that is not part of one."""
-    ROWS.append({"extreme": extreme, "series": series or "", "value": at, "exit": "time out" if result["exit"] is None else result["exit"],
-                 "error": "" if error is None or result["exit"] else f"{error:.2e}", "nan": "yes" if result["nan"] else "no",
-                 "state": "yes" if result["state"] else "no", "processor_s": f"{result['processor_s']:.1f}",
-                 "remark": remark or (result["message"] if result["exit"] else "")})
-    row = ROWS[-1]
-    print(f"  {extreme}, {series or ''}, {at}: exit {row['exit']}, error {row['error'] or '-'}, nan {row['nan']}", flush=True)
-
-
-def limits():
-    """Of every series: where it stops being accurate, where it stops, and how."""
-    found = []
-    for extreme, series in dict.fromkeys((row["extreme"], row["series"]) for row in ROWS if row["series"]):
-        rows = [row for row in ROWS if (row["extreme"], row["series"]) == (extreme, series)]
-        solved = [row for row in rows if row["exit"] == 0]
-        stop = next((row for row in rows if row["exit"] != 0), None)
-        accurate, wrong = None, None
-        for row in solved:
-            if row["error"] and float(row["error"]) > ACCURATE:
-                wrong = row
-                break
-            if row["error"]:
-                accurate = row
-        found.append({"extreme": extreme, "series": series,
-                      "accurate until (error to 2 %)": accurate["value"] if accurate else "",
-                      "no longer at": f"{wrong['value']} (error {float(wrong['error']):.2g})" if wrong else "",
-                      "goes on until": solved[-1]["value"] if solved else "",
-                      "stops at": stop["value"] if stop else "does not stop",
-                      "how": f"exit {stop['exit']}, {'last state kept' if stop['state'] == 'yes' else 'nothing written'}: "
-                             f"{stop['remark']}" if stop else "exit 0",
-                      "nan": "yes" if any(row["nan"] == "yes" for row in rows) else "no"})
-    return found
+STUDY = Extremes("structure")
+note = STUDY.note
 
 
 def run(scene, name, **options):
@@ -316,13 +281,10 @@ def main():
             continue
         print(f"{part.__name__} ({time.monotonic() - start:.0f} s since the start)", flush=True)
         part()
-    if not ROWS:
+    if not STUDY.rows:
         sys.exit(f"error: no part is called {' or '.join(only)}; expected {', '.join(part.__name__ for part in parts)}")
-    runs.write_csv(out / "structure-extremes.csv", ROWS, source)
-    runs.write_csv(out / "structure-extremes-limits.csv", limits(), source)
-    for row in limits():
-        print("| " + " | ".join(str(cell)[:120] for cell in row.values()) + " |")
-    print(f"written: {out / 'structure-extremes.csv'}, structure-extremes-limits.csv after {time.monotonic() - start:.0f} s")
+    STUDY.write(out, source)
+    print(f"all: {time.monotonic() - start:.0f} s")
 
 
 if __name__ == "__main__":

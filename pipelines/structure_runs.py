@@ -69,19 +69,27 @@ def toml(scene):
 
 
 def run(scene, folder, timeout_s=900, threads=1):
-    """What came of it: exit code, the last message, seconds, metrics, last row of the history, whether a NaN was found,
-    whether a state was left."""
+    """A scene (dictionary or text) as a case file in the folder, run by valsalva-cycle; see run_program."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     case = folder / "case.toml"
     case.write_text(scene if isinstance(scene, str) else toml(scene))
-    words = [str(BIN / "valsalva-cycle"), str(case), "--out", str(folder / "out")]
-    for old in (folder / "out").glob("*"):
+    return run_program([BIN / "valsalva-cycle", case], folder / "out", timeout_s, threads)
+
+
+def run_program(words, out, timeout_s=900, threads=1):
+    """What came of a stage's run into the folder `out`: exit code, the last message, seconds, steps, metrics, last row of the
+    history, whether an output holds a value that is not finite, whether a state was left."""
+    out = Path(out)
+    for old in out.glob("*"):
         old.unlink()
+    words = [str(word) for word in words] + ["--out", str(out)]
+    environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OMPI_ALLOW_RUN_AS_ROOT="1",
+                       OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     try:
-        done = subprocess.run(words, env=dict(os.environ, OMP_NUM_THREADS=str(threads)), stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True, timeout=timeout_s)
+        done = subprocess.run(words, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              timeout=timeout_s)
         code, text = done.returncode, done.stdout
     except subprocess.TimeoutExpired as expired:
         code, text = None, (expired.stdout or b"").decode()
@@ -90,16 +98,19 @@ def run(scene, folder, timeout_s=900, threads=1):
     result = {"exit": code, "wall_s": time.monotonic() - start,
               "processor_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
               "message": next((line for line in reversed(text.splitlines()) if "error" in line.lower()),
-                              text.strip().splitlines()[-1] if text.strip() else ""),
-              "metrics": {}, "last": {}, "nan": False, "state": any((folder / "out").glob("state_*.h5"))}
-    summary = folder / "out" / "summary.json"
+                              text.strip().splitlines()[-1] if text.strip() else ""), "text": text,
+              "metrics": {}, "last": {}, "state": any(out.glob("state_*.h5"))}
+    result["nan"] = any(not_finite(path) for path in out.glob("state_*.h5"))
+    summary = out / "summary.json"
     if summary.exists():
         text = summary.read_text()
-        result["nan"] |= "nan" in text.lower()
-        if not result["nan"]:
+        bad = "nan" in text.lower()
+        result["nan"] |= bad
+        if not bad:
+            result["summary"] = json.loads(text)
             result["metrics"] = {name: entry.get("value") if isinstance(entry, dict) else entry
-                                 for name, entry in json.loads(text).get("metrics", {}).items()}
-    history = folder / "out" / "history.csv"
+                                 for name, entry in result["summary"].get("metrics", {}).items()}
+    history = out / "history.csv"
     if history.exists():
         with open(history, newline="") as file:
             rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
@@ -113,6 +124,22 @@ def run(scene, folder, timeout_s=900, threads=1):
             result["last"] = {key: float(v) for key, v in rows[-1].items() if v not in (None, "")}
         result["rows"] = rows
     return result
+
+
+def not_finite(path):
+    """Whether any array of floating point numbers in a state file holds a value that is not finite."""
+    import h5py
+    import numpy
+
+    found = []
+
+    def look(_, item):
+        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f":
+            found.append(not numpy.isfinite(item[()]).all())
+
+    with h5py.File(path) as file:
+        file.visititems(look)
+    return any(found)
 
 
 def table(header, rows):

@@ -1,193 +1,231 @@
-"""make tradeoff, beating valve: figures of the beat against wall time over grid, leaflet mesh, kernel, step and convection.
+"""make tradeoff, beating valve: figures of the beat against time over grid, leaflet mesh, kernel, coupling, step, convection.
 
-    python3 pipelines/tradeoff_cycle.py [--scenes NAME ...] [--knobs WORD ...] [--ranks 2] [--out docs/results]
+    python3 pipelines/tradeoff_cycle.py [--scenes NAME ...] [--knobs WORD ...] [--values TEXT ...] [--ranks 2] [--again]
+                                        [--out docs/results] [--runs runs] [--list] [--tables]
 
-Every row is one beat of a scene with one knob moved from the base (draft: h = 1 mm, leaflet edges 0.5 mm, ib4, safety
-0.85, upwind3). Segment and mesher run once for each leaflet mesh; a row whose beat is there already, of the same program
-and parameters, is read back, so that a study that was stopped goes on. Written after every row: runs/tradeoff/cycle.csv
-and, when it is done, OUT/cycle-tradeoff.csv and .png.
+Every row is one beat of a scene with one knob moved from the base (draft: h = 1 mm, leaflet edges 0.5 mm, ib4, safety 0.85,
+upwind3). The stages before the beat run once for each leaflet mesh. OUT/cycle-tradeoff.csv is rewritten after every row and
+is the study's memory: a row that it holds with the same parameters is not run again (--again: it is), so that the study can
+be done in pieces, the cheap rows first; every row names its own commit, machine and load. --list: what is there and what is
+missing; --tables: only the tables and the plot anew. With OUT/structure-tradeoff.csv they make runs/tradeoff/tradeoff.csv.
 
-difference_pct: the largest of the differences of mean gradient, orifice area and stroke volume from the base's, over the
-base's; error_pct: the same from the finest grid of the scene. Pareto: no other row of the scene is both faster and nearer to
-the finest grid. Of the three finest grids comes the observed order and the extrapolated value of each figure (Richardson),
-in cycle-tradeoff-order.csv; figures that do not come nearer with every halving have none.
+difference_pct: the largest difference of mean gradient, orifice area and stroke volume from the base's. <figure>_error_pct:
+from the value extrapolated to h = 0 (Richardson) with the order that the three finest grids of the scene show
+(cycle-tradeoff-order.csv); where they show none, with first order, from the finest two; error_pct is the largest of the
+three. Pareto: no other row of the scene is both cheaper (processor time) and nearer. What `valsalva-cycle --estimate` and
+the accuracy band of a run go by is the part of these rows in cycle/measured.csv, which is written along with OUT =
+docs/results.
 """
 
 import argparse
-import json
-import math
 import os
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import pipeline
+import stages
 import structure_runs as runs
+import tradeoff
 
-FOLDER = runs.ROOT / "runs" / "tradeoff" / "cycle"
 START = time.monotonic()
-FIGURES = ["mean_gradient_mmHg", "eoa_cm2", "stroke_volume_mL", "regurgitant_volume_mL", "leaflet_von_mises_p99_kPa",
-           "leaflet_max_principal_strain_p99", "diastolic_leak_mL_per_s", "volume_balance_error_pct", "max_cfl"]
+SCENES = {"native-healthy": "healthy", "native-stenotic": "stenotic", "demo": "device"}
+FIGURES = tradeoff.FIGURES
+OTHERS = ["leaflet_max_principal_strain_p99", "diastolic_leak_mL_per_s", "volume_balance_error_pct", "max_cfl", "returns_after_alarm",
+          "cells", "leaflet_nodes"]
 COMPARED = FIGURES[:3]
 BASE = {"fluid.spacing_mm": "1", "leaflet_edge_mm": "0.5"}
 # knob -> (value, what it changes)
 KNOBS = {
-    "base": [("draft", {})],
-    "grid": [("1.5 mm", {"fluid.spacing_mm": "1.5", "leaflet_edge_mm": "0.75"}),
-             ("1.25 mm", {"fluid.spacing_mm": "1.25", "leaflet_edge_mm": "0.62"}),
-             ("0.75 mm", {"fluid.spacing_mm": "0.75", "leaflet_edge_mm": "0.37"})],
-    "fine": [("0.5 mm", {"fluid.spacing_mm": "0.5", "leaflet_edge_mm": "0.25"})],
+    "grid": [("1.5 mm", {"fluid.spacing_mm": "1.5"}), ("1.25 mm", {"fluid.spacing_mm": "1.25"}), ("1 mm", {}),
+             ("0.75 mm", {"fluid.spacing_mm": "0.75", "leaflet_edge_mm": "0.37"}),
+             ("0.5 mm", {"fluid.spacing_mm": "0.5", "leaflet_edge_mm": "0.25"})],
     "leaflet edge": [("1 mm", {"leaflet_edge_mm": "1"}), ("0.7 mm", {"leaflet_edge_mm": "0.7"}),
                      ("0.35 mm", {"leaflet_edge_mm": "0.35"})],
     "kernel": [(name, {"cycle.kernel": name}) for name in ("ib3", "bspline3", "bspline4", "cbs32", "cbs43")],
+    "coupling": [("no standoff", {"cycle.standoff_cells": "0"}), ("no repulsion", {"cycle.repulsion_kPa": "0"})],
+    "wall": [("interpolated", {"fluid.wall": "interpolated"})],
     "step safety": [(value, {"cycle.step_safety": value}) for value in ("0.6", "0.3")],
     "largest step": [("30 us", {"cycle.max_step_s": "3e-5"})],
     "convection": [(name, {"fluid.convection": name}) for name in ("weno5", "centred4")],
 }
+KEYS = ("scene", "knob", "value")
+MEASURED = ["valve", "spacing_mm", "ranks", "cells", "leaflet_nodes", "steps", "simulated_s", "processor_s", "memory_MiB",
+            *[f"{figure}_error_pct" for figure in FIGURES], "error_basis", "commit", "machine", "date"]
 
 
-def program(words, log):
-    with open(log, "w") as file:
-        return subprocess.run([str(word) for word in words], cwd=runs.ROOT, stdout=file, stderr=subprocess.STDOUT,
-                              env=dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
-                                       OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")).returncode
+def parent(scene, edge, folder):
+    """The newest state of the stage before the beat, with this leaflet mesh."""
+    overrides = [f"case.name={scene}-edge-{edge}", f"mesh.leaflet_edge_mm={edge}"]
+    chain = stages.Chain(scene, "draft", overrides, 1, folder)
+    if "device" in chain.tables:
+        chain = stages.Chain(scene, "draft", overrides + [f"device.leaflet_edge_mm={edge}"], 1, folder)
+    before = [stage for stage in chain.stages() if stage not in ("cycle", "report")]
+    for stage in before:
+        if code := pipeline.run_stage(chain, stage, False, False):
+            sys.exit(f"error: {stage} of {scene} with leaflet edges of {edge} mm failed with exit code {code}")
+    return sorted((chain.folder / before[-1]).glob("state_*.h5"))[-1]
 
 
-def parent(scene, edge):
-    """The mesher's state of the scene with this leaflet mesh; of a scene with a device, deploy's."""
-    name = f"{scene}-edge-{edge}"
-    folder = FOLDER / "meshes"
-    folder.mkdir(parents=True, exist_ok=True)
-    stage = "deploy" if "[device]" in (runs.ROOT / "pipelines" / "cases" / f"{scene}.toml").read_text() else "mesher"
-    words = [sys.executable, "pipelines/pipeline.py", "stage", stage, scene, "--fidelity", "draft", "--runs", folder, "--set",
-             f"case.name={name}", "--set", f"mesh.leaflet_edge_mm={edge}"]
-    if stage == "deploy":
-        words += ["--set", f"device.leaflet_edge_mm={edge}"]
-    code = program(words, folder / f"{name}.log")
-    if code:
-        sys.exit(f"error: {stage} of {scene} with leaflet edges of {edge} mm failed with exit code {code}, see {folder / name}.log")
-    return sorted((folder / name / stage).glob("state_*.h5"))[-1], (stage == "deploy")
-
-
-def beat(scene, label, changes, ranks):
-    """The summary of one beat, run where it is not there already."""
+def words_of(scene, changes):
     settings = BASE | changes
     edge = settings.pop("leaflet_edge_mm")
-    state, device = parent(scene, edge)
-    out = FOLDER / f"{scene}-{label.replace(' ', '_')}"
-    sets = settings | {"mesh.leaflet_edge_mm": edge} | ({"device.leaflet_edge_mm": edge} if device else {})
-    words = [runs.BIN / "valsalva-cycle", f"pipelines/cases/{scene}.toml", "--fidelity", "draft"]
-    words += [word for key, value in sets.items() for word in ("--set", f'{key}={value}')]
-    version = subprocess.run([runs.BIN / "valsalva-cycle", "--version"], stdout=subprocess.PIPE, text=True).stdout.split()[-1]
-    digest = subprocess.run([str(w) for w in words] + ["--digest"], cwd=runs.ROOT, stdout=subprocess.PIPE, text=True).stdout.strip()
-    key = {"version": version, "digest": digest, "ranks": ranks, "parent": state.name}
-    stamp = out.with_suffix(".json")
-    if stamp.exists() and json.loads(stamp.read_text()) == key and (out / "summary.json").exists():
-        return json.loads((out / "summary.json").read_text())
-    if ranks > 1:
-        words = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", ranks] + words
-    stamp.unlink(missing_ok=True)
-    program(words + ["--from", state, "--out", out], out.with_suffix(".log"))
-    summary = json.loads((out / "summary.json").read_text()) if (out / "summary.json").exists() else {"status": "failed"}
-    if summary["status"] == "ok":
-        runs.replace(stamp, json.dumps(key))
-    return summary
+    device = "[device]" in stages.case_path(scene).read_text()
+    settings |= {"mesh.leaflet_edge_mm": edge} | ({"device.leaflet_edge_mm": edge} if device else {})
+    words = [runs.BIN / "valsalva-cycle", stages.case_path(scene), "--fidelity", "draft"]
+    return words + [word for key, value in settings.items() for word in ("--set", f"{key}={value}")], edge
+
+
+def digest_of(words, edge):
+    """Of all parameters of the beat and of the leaflet mesh."""
+    done = subprocess.run([str(w) for w in words] + ["--digest"], cwd=runs.ROOT, stdout=subprocess.PIPE, text=True)
+    if done.returncode:
+        sys.exit(done.returncode)
+    return f"{done.stdout.strip()[:12]}-{edge}"
+
+
+def beat(scene, knob, value, changes, options, digest):
+    """One row: the beat is run."""
+    words, edge = words_of(scene, changes)
+    folder = options.runs / "tradeoff" / "cycle"
+    state = parent(scene, edge, folder / "meshes")
+    if options.ranks > 1:
+        words = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", options.ranks] + words
+    source = runs.provenance()
+    result = runs.run_program(words + ["--from", state.resolve()], folder / f"{scene}-{knob}-{value}".replace(" ", "_"), 86400)
+    summary, metrics = result.get("summary", {}), result["metrics"]
+    status = summary.get("status", "failed")
+    if result["nan"]:
+        status = "not finite"
+    row = {"scene": scene, "knob": knob, "value": value, "status": status if status != "failed" else result["message"][:200],
+           "spacing_mm": (BASE | changes)["fluid.spacing_mm"], "leaflet_edge_mm": edge, "ranks": options.ranks,
+           "steps": summary.get("steps", ""), "simulated_s": summary.get("simulated_s", ""), "wall_s": round(result["wall_s"], 1),
+           "processor_s": round(result["processor_s"], 1), "memory_MiB": round(summary.get("peak_rss_MiB", 0)),
+           **{name: metrics.get(name, "") for name in FIGURES + OTHERS}}
+    return row | {"parameters": digest, "commit": summary.get("version", source["commit"]), "machine": source["machine"],
+                  "load_at_start": source["load_at_start"], "date": source["date"]}
 
 
 def spacing(row):
     return float(row["spacing_mm"])
 
 
+def number(row, name):
+    return float(row[name]) if row.get(name) not in ("", None) else None
+
+
+def whole(rows, scene):
+    """The rows of the scene with all the figures of a beat."""
+    return [row for row in rows if row["scene"] == scene and row["status"] == "ok" and number(row, COMPARED[0]) is not None]
+
+
+def extrapolate(h, f):
+    """Value at h = 0, observed order (None where there is none, or fewer than three grids: first order is taken then) from the
+    finest grids, h ascending. None, None for a single grid."""
+    if len(h) < 2:
+        return None, None
+    if len(h) > 2 and f[1] != f[0]:
+        ratio = (f[2] - f[1]) / (f[1] - f[0])
+        order = next((p / 100 for p in range(30, 401)
+                      if (h[2] ** (p / 100) - h[1] ** (p / 100)) / (h[1] ** (p / 100) - h[0] ** (p / 100)) >= ratio), None)
+        smallest = (h[2] ** 0.3 - h[1] ** 0.3) / (h[1] ** 0.3 - h[0] ** 0.3)
+        if order is not None and ratio >= smallest:
+            return f[0] - (f[1] - f[0]) / ((h[1] / h[0]) ** order - 1), order
+    return f[0] - (f[1] - f[0]) / (h[1] / h[0] - 1), None
+
+
 def compare(rows):
-    """Differences and the Pareto front, within each scene."""
+    """Fills in differences, errors and the Pareto front of each scene; the table of orders."""
+    orders = []
+    for row in rows:
+        row |= {"difference_pct": "", **{f"{figure}_error_pct": "" for figure in FIGURES}, "error_basis": "", "error_pct": "", "pareto": ""}
     for scene in dict.fromkeys(row["scene"] for row in rows):
-        mine = [row for row in rows if row["scene"] == scene and row["status"] == "ok"]
-        base = next((row for row in mine if row["knob"] == "base"), None)
-        finest = min((row for row in mine if row["knob"] in ("base", "grid", "fine")), key=spacing, default=None)
-        for row in mine:
-            for column, other in (("difference_pct", base), ("error_pct", finest)):
-                row[column] = round(100 * max(abs(row[f] / other[f] - 1) for f in COMPARED), 3) if other else ""
-        for row in mine:
-            row["pareto"] = "yes" if not any(
-                other["wall_s"] < row["wall_s"] and other["error_pct"] <= row["error_pct"] for other in mine) else ""
-
-
-def orders(rows):
-    """Observed order and extrapolated value of each figure from the three finest grids of each scene."""
-    found = []
-    for scene in dict.fromkeys(row["scene"] for row in rows):
-        grids = sorted((row for row in rows if row["scene"] == scene and row["status"] == "ok"
-                        and row["knob"] in ("base", "grid", "fine")), key=spacing)[:3]
-        if len(grids) < 3:
+        mine = whole(rows, scene)
+        grids = sorted((row for row in mine if row["knob"] == "grid"), key=spacing)
+        base = next((row for row in grids if spacing(row) == 1), None)
+        if base:
+            for row in mine:
+                row["difference_pct"] = round(100 * max(abs(number(row, f) / number(base, f) - 1) for f in COMPARED), 3)
+        if len(grids) < 2:
             continue
-        h = [spacing(row) for row in grids]
-        for figure in COMPARED:
-            f = [row[figure] for row in grids]
-            ratio = (f[2] - f[1]) / (f[1] - f[0]) if f[1] != f[0] else math.inf
-            order = next((p / 100 for p in range(5, 400)
-                          if (h[2] ** (p / 100) - h[1] ** (p / 100)) / (h[1] ** (p / 100) - h[0] ** (p / 100)) >= ratio), None)
-            limit = f[0] - (f[1] - f[0]) / ((h[1] / h[0]) ** order - 1) if order and ratio > 0 else None
-            found.append({"scene": scene, "figure": figure, **{f"h_{a:g}_mm": b for a, b in zip(h, f)},
-                          "order": order if limit is not None else "", "extrapolated": "" if limit is None else round(limit, 5),
-                          "finest_off_pct": "" if limit is None else round(100 * abs(f[0] / limit - 1), 2)})
-    return found
-
-
-def draw(rows, path):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    scenes = list(dict.fromkeys(row["scene"] for row in rows))
-    figure, axes = plt.subplots(1, len(scenes), figsize=(7 * len(scenes), 6), squeeze=False)
-    for axis, scene in zip(axes[0], scenes):
-        mine = [row for row in rows if row["scene"] == scene and row["status"] == "ok"]
-        for knob in dict.fromkeys(row["knob"] for row in mine):
-            line = [(row["wall_s"], max(row["error_pct"], 0.01)) for row in mine if row["knob"] == knob]
-            axis.loglog(*zip(*line), "o", label=knob)
+        finest = grids[:3]
+        basis = []
+        for figure in FIGURES:
+            h, f = [spacing(row) for row in finest], [number(row, figure) for row in finest]
+            limit, order = extrapolate(h, f)
+            basis.append("1 assumed" if order is None else f"{order:g}")
+            for row in mine:
+                if limit:
+                    row[f"{figure}_error_pct"] = round(100 * abs(number(row, figure) / limit - 1), 3)
+            orders.append({"scene": scene, "figure": figure, **{key: value for i in range(3) for key, value in (
+                (f"h{i + 1}_mm", h[i] if i < len(h) else ""), (f"value{i + 1}", f[i] if i < len(f) else ""))},
+                           "observed_order": "" if order is None else order, "extrapolated": round(limit, 5),
+                           "finest_error_pct": finest[0][f"{figure}_error_pct"]})
         for row in mine:
-            axis.annotate(row["value"], (row["wall_s"], max(row["error_pct"], 0.01)), fontsize=7)
-        front = sorted((row["wall_s"], max(row["error_pct"], 0.01)) for row in mine if row["pareto"])
-        axis.loglog(*zip(*front), "k--", linewidth=0.8, label="Pareto front")
-        axis.set(title=scene, xlabel="wall time of a beat, s", ylabel="largest difference from the finest grid, %")
-        axis.grid(True, which="both", alpha=0.3)
-        axis.legend(fontsize=7)
-    figure.tight_layout()
-    partial = path.with_suffix(".partial.png")
-    figure.savefig(partial, dpi=100)
-    os.replace(partial, path)
+            row["error_basis"] = f"grids {' '.join(row2['spacing_mm'] for row2 in finest)} mm, orders {' '.join(basis)}"
+            row["error_pct"] = max(row[f"{figure}_error_pct"] for figure in COMPARED)
+        tradeoff.mark_pareto(mine)
+    return orders
+
+
+def write(rows, options, source):
+    """All tables; what the program goes by only along with the committed ones."""
+    if not rows:
+        return
+    wanted = [(scene, knob, value) for scene in SCENES for knob in KNOBS for value, _ in KNOBS[knob]]
+    place = {key: n for n, key in enumerate(wanted)}
+    rows.sort(key=lambda row: place.get(tuple(row[key] for key in KEYS), len(place)))
+    orders = compare(rows)
+    runs.write_csv(options.out / "cycle-tradeoff.csv", rows, source)
+    if orders:
+        runs.write_csv(options.out / "cycle-tradeoff-order.csv", orders, source)
+    measured = [{key: {"valve": SCENES[row["scene"]]}.get(key, row.get(key, "")) for key in MEASURED}
+                for row in sorted(rows, key=lambda row: (row["scene"], -spacing(row)))
+                if row["scene"] in SCENES and row["knob"] == "grid" and row["status"] == "ok"]
+    if measured and options.out.resolve() == tradeoff.RESULTS.resolve():
+        runs.write_csv(runs.ROOT / "cycle" / "measured.csv", measured, source)
+    tradeoff.gather(options.out, options.runs / "tradeoff")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--scenes", nargs="*", default=["native-healthy", "native-stenotic", "demo"])
+    parser.add_argument("--scenes", nargs="*", default=list(SCENES))
     parser.add_argument("--knobs", nargs="*", default=list(KNOBS))
-    parser.add_argument("--ranks", type=int, default=2)
-    parser.add_argument("--out", type=Path, default=runs.ROOT / "docs" / "results")
+    parser.add_argument("--values", nargs="*", default=[])
+    parser.add_argument("--ranks", type=int, default=min(2, os.cpu_count() or 1))
+    parser.add_argument("--out", type=Path, default=tradeoff.RESULTS)
+    parser.add_argument("--runs", type=Path, default=runs.ROOT / "runs")
+    parser.add_argument("--again", action="store_true")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--tables", action="store_true")
     options = parser.parse_args()
-    unknown = [knob for knob in options.knobs if knob not in KNOBS]
-    if unknown:
+    if unknown := [knob for knob in options.knobs if knob not in KNOBS]:
         parser.error(f"--knobs: '{unknown[0]}' is none of {', '.join(KNOBS)}")
+    stages.BIN = runs.BIN
     source = runs.provenance()
-    rows = []
-    for scene in options.scenes:
-        for knob in ["base"] + [k for k in options.knobs if k != "base"]:
-            for value, changes in KNOBS[knob]:
-                summary = beat(scene, f"{knob}-{value}", changes, options.ranks)
-                metrics = summary.get("metrics", {})
-                rows.append({"scene": scene, "knob": knob, "value": value, "status": summary["status"],
-                             "spacing_mm": (BASE | changes)["fluid.spacing_mm"], "ranks": options.ranks,
-                             "steps": summary.get("steps", ""), "wall_s": round(summary.get("wall_s", 0), 1),
-                             **{f: metrics.get(f, "") for f in FIGURES}, "difference_pct": "", "error_pct": "", "pareto": ""})
-                compare(rows)
-                runs.write_csv(FOLDER.with_suffix(".csv"), rows, source)
-                print(f"{time.monotonic() - START:6.0f} s  {scene}, {knob} {value}: {rows[-1]['status']}, {rows[-1]['steps']} steps, "
-                      f"{rows[-1]['wall_s']} s, {rows[-1]['difference_pct']} % from the base", flush=True)
-    runs.write_csv(options.out / "cycle-tradeoff.csv", rows, source)
-    found = orders(rows)
-    if found:
-        runs.write_csv(options.out / "cycle-tradeoff-order.csv", found, source)
-    draw(rows, options.out / "cycle-tradeoff.png")
-    print(f"written: {options.out / 'cycle-tradeoff.csv'} after {time.monotonic() - START:.0f} s")
+    rows, before = tradeoff.read(options.out / "cycle-tradeoff.csv")
+    if options.tables:
+        write(rows, options, before or source)
+        return
+    asked = [(knob, scene, value, changes) for knob in options.knobs for value, changes in KNOBS[knob] for scene in options.scenes
+             if not options.values or value in options.values]
+    for knob, scene, value, changes in asked:
+        digest = digest_of(*words_of(scene, changes))
+        same = [row for row in rows if tuple(row[key] for key in KEYS) == (scene, knob, value)]
+        done = [row for row in same if row["parameters"] == digest and row["status"] == "ok"]
+        if options.list or (done and not options.again):
+            print(f"{scene}, {knob} {value}: {'done, ' + done[0]['commit'] if done else 'missing'}")
+            continue
+        row = beat(scene, knob, value, changes, options, digest)
+        rows = [other for other in rows if other not in same] + [row]
+        write(rows, options, source)
+        print(f"{time.monotonic() - START:6.0f} s  {scene}, {knob} {value}: {row['status']}, {row['steps']} steps, "
+              f"{row['processor_s']} s of processor, {row['difference_pct'] or '?'} % from the base", flush=True)
+    if not options.list:
+        write(rows, options, source)
+        print(f"written: {options.out / 'cycle-tradeoff.csv'}, {options.runs / 'tradeoff' / 'tradeoff.csv'} after "
+              f"{time.monotonic() - START:.0f} s")
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 import structure_runs as runs
+import tradeoff
 
 FOLDER = runs.ROOT / "runs" / "tradeoff"
 START = time.monotonic()
@@ -134,6 +135,7 @@ def write(rows, out, source):
     partial = out / "structure-tradeoff.partial.png"
     figure.savefig(partial, dpi=110)
     os.replace(partial, out / "structure-tradeoff.png")
+    tradeoff.gather(out)
     print(f"written: {out / 'structure-tradeoff.csv'}, {out / 'structure-tradeoff.png'} after {time.monotonic() - START:.0f} s")
 
 
