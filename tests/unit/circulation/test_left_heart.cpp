@@ -118,6 +118,23 @@ TEST(ClosedLoop, PeriodicBeatBalancesInflowAndLooksLikeAHeart) {
   EXPECT_LT(beat.ventricular_pressure / units::pa_per_mmHg, 20);
 }
 
+// exp(-T / RC) is 0.995 and 0.99995 with these compliances: the loop moves by less than the tolerance in a
+// beat long before it is periodic. What flows in must flow out.
+TEST(ClosedLoop, APeriodicBeatIsFoundForAnyCompliance) {
+  const LeftHeartParameters heart = healthy_left_heart();
+  const double inflow = heart.vein_flow * heart.period_s;
+  for (const double factor : {1e-4, 1e-2, 1.0, 1e2, 1e4}) {
+    const WindkesselParameters tree{0.042 * units::resistance_per_mmHg_s_per_mL,
+                                    0.9046 * units::resistance_per_mmHg_s_per_mL,
+                                    factor * 1.9504 * units::compliance_per_mL_per_mmHg};
+    const PeriodicBeat beat = periodic_beat(heart, tree, {0.02 * units::resistance_per_mmHg_s_per_mL, 2e-4});
+    EXPECT_NEAR(beat.stroke_volume, inflow, 2e-3 * inflow) << factor;
+    // The mean flow through the peripheral resistance is the mean inflow.
+    const double mean = beat.mean_aortic_pressure - tree.characteristic_resistance * heart.vein_flow;
+    EXPECT_NEAR(mean, tree.peripheral_resistance * heart.vein_flow, 2e-3 * mean) << factor;
+  }
+}
+
 TEST(ClosedLoop, AFixedEndOfInflowFails) {
   WindkesselParameters tree{0, 1e9, 1e-3};
   EXPECT_THROW(periodic_beat(healthy_left_heart(), tree, {0, 2e-4}), NumericalFailure);
