@@ -57,10 +57,10 @@ MEASURED = ["valve", "spacing_mm", "ranks", "cells", "leaflet_nodes", "steps", "
 
 def parent(scene, edge, folder):
     """The newest state of the stage before the beat, with this leaflet mesh."""
-    overrides = [f"case.name={scene}-edge-{edge}", f"mesh.leaflet_edge_mm={edge}"]
-    chain = stages.Chain(scene, "draft", overrides, 1, folder)
-    if "device" in chain.tables:
-        chain = stages.Chain(scene, "draft", overrides + [f"device.leaflet_edge_mm={edge}"], 1, folder)
+    overrides = [f"mesh.leaflet_edge_mm={edge}"]
+    if "[device]" in stages.case_path(scene).read_text():
+        overrides.append(f"device.leaflet_edge_mm={edge}")
+    chain = stages.Chain(scene, "draft", overrides, 1, folder / f"edge-{edge}")
     before = [stage for stage in chain.stages() if stage not in ("cycle", "report")]
     for stage in before:
         if code := pipeline.run_stage(chain, stage, False, False):
