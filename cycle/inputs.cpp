@@ -139,10 +139,11 @@ fluid::Grid box_of(const Inputs& in, double h, double margin_cells) {
   if (!(low.x() < high.x()))
     throw InputError("{}: the level set has no inside between z = {:.2f} and {:.2f} mm; run segment again",
                      in.parent.source, in.low_z_mm, in.high_z_mm);
+  // A cell for the standoff, by which nodes may couple further outside.
   if (in.leaflets)
     for (const Vec3& x : in.leaflets->points) {
-      low = low.cwiseMin(x);
-      high = high.cwiseMax(x);
+      low = low.cwiseMin(x - Vec3::Constant(h));
+      high = high.cwiseMax(x + Vec3::Constant(h));
     }
   // Sizes with small factors only, for the transforms.
   const auto friendly = [](int n) {
