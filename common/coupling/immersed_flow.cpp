@@ -12,6 +12,10 @@ namespace {
 
 constexpr double planned_share = 0.9;  // of the CFL limit: the speed grows within the step
 constexpr double smallest_cut = 0.1;
+// Estimates of the limit that agree within this share are made half as often as before, down to one in
+// `rarest` intervals.
+constexpr double steady = 0.02;
+constexpr int rarest = 4;
 
 void clear(const fluid::Slab& slab, fluid::Planes planes, fluid::FaceField& field) {
   for (int d = 0; d < 3; ++d) {
@@ -66,9 +70,12 @@ void ImmersedFlow::interpolate(const fluid::FaceField& velocity, Points& out, bo
 }
 
 void ImmersedFlow::probe() {
-  probed_ = steps_;
+  const double before = power_.eigenvalue();
   probed_x_ = body_->x();
   iterate(steps_ == 0 ? settings_.first_iterations : settings_.probe_iterations);
+  const bool same = steps_ > probed_ && std::abs(power_.eigenvalue() - before) <= steady * before;
+  interval_ = same ? std::min(2 * interval_, rarest * settings_.probe_interval) : settings_.probe_interval;
+  probed_ = steps_;
 }
 
 double ImmersedFlow::find_critical() {
@@ -110,8 +117,7 @@ double ImmersedFlow::plan() {
           "coupling: an edge of the structure is {:.3g} times as long as in its stress-free shape",
           stretch.largest);
     stiffening = body_->stiffening(stretch.change);
-    if (steps_ == 0 || steps_ - probed_ >= settings_.probe_interval ||
-        stiffening > settings_.probe_stiffening) {
+    if (steps_ == 0 || steps_ - probed_ >= interval_ || stiffening > settings_.probe_stiffening) {
       probe();
       stiffening = 1;
     }
@@ -184,22 +190,23 @@ std::map<std::string, state::Array> ImmersedFlow::save() const {
     arrays["coupling/change"] = state::Array::of(change_);
     arrays["coupling/probed_points"] = state::Array::of(probed_x_);
   }
-  arrays["coupling/history"] =
-      state::Array::of(std::vector<double>{static_cast<double>(steps_), last_dt_, max_speed_, caution_,
-                                           power_.eigenvalue(), static_cast<double>(probed_)});
+  arrays["coupling/history"] = state::Array::of(
+      std::vector<double>{static_cast<double>(steps_), last_dt_, max_speed_, caution_, power_.eigenvalue(),
+                          static_cast<double>(probed_), static_cast<double>(interval_)});
   return arrays;
 }
 
 void ImmersedFlow::load(const state::State& state) {
   flow_.load(state);
   const std::vector<double>& history = state.array("coupling/history").doubles("coupling/history");
-  if (history.size() != 6)
-    throw InputError("{}: coupling/history has {} entries, expected 6", state.source, history.size());
+  if (history.size() != 7)
+    throw InputError("{}: coupling/history has {} entries, expected 7", state.source, history.size());
   steps_ = static_cast<long>(history[0]);
   last_dt_ = history[1];
   max_speed_ = history[2];
   caution_ = history[3];
   probed_ = static_cast<long>(history[5]);
+  interval_ = static_cast<int>(history[6]);
   if (!body_) return;
   const auto points = [&](const char* name, std::size_t size) {
     Points read = state.array(name).points(name);
