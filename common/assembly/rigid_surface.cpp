@@ -13,10 +13,13 @@ RigidShape::Near RigidShape::near(const Vec3& x, double growth) const {
     const double size = slope.norm();
     return {sign * level_set->value(x), size > 1e-6 ? Vec3(sign / size * slope) : Vec3(Vec3::Zero())};
   }
-  if (kind == Kind::cylinder) d -= direction.dot(d) * direction;
+  Mat3 across = Mat3::Identity();
+  if (kind == Kind::cylinder) across -= direction * direction.transpose();
+  d = (across * d).eval();
   const double r = d.norm(), sign = inside ? -1 : 1;
-  const Vec3 normal = r > 0 ? Vec3(sign / r * d) : Vec3(Vec3::Zero());
-  return {sign * (r - radius - growth), normal};
+  if (!(r > 0)) return {sign * (r - radius - growth), Vec3::Zero()};
+  const Vec3 normal = sign / r * d;
+  return {sign * (r - radius - growth), normal, sign / r * (across - normal * normal.transpose())};
 }
 
 RigidSurfaceContact::RigidSurfaceContact(std::string name, RigidShape shape,
@@ -38,6 +41,7 @@ RigidSurfaceContact::Touch RigidSurfaceContact::touch(std::size_t i,
   const RigidShape::Near near = shape_.near(t.place, motion.growth);
   t.overlap = nodes_[i].radius_mm - near.distance;
   t.normal = near.normal;
+  t.turn = near.turn;
   t.force = std::max(0.0, parameters_.normal_Pa_per_mm * nodes_[i].area_mm2 * t.overlap);
   return t;
 }
@@ -74,7 +78,7 @@ void RigidSurfaceContact::add_tangent(const structure::Configuration& now,
     if (t.force <= 0) continue;
     const double area = nodes_[i].area_mm2;
     const Mat3 normal = t.normal * t.normal.transpose();
-    Mat3 k = parameters_.normal_Pa_per_mm * area * normal;
+    Mat3 k = parameters_.normal_Pa_per_mm * area * normal - t.force * t.turn;
     if (tethers_.engaged(i)) {
       const Vec3 friction = tethers_.force(i, t.place, t.normal, t.force, area);
       const double limit = tethers_.friction() * t.force;

@@ -4,7 +4,7 @@
 // Distance d(x) on the free side: plane n.(x - p); sphere |x - p| - R, cylinder |(1 - a a)(x - p)| - R (signs
 // reversed for bodies inside), level set phi(x). Overlap g = r - d, energy A K_n g^2 / 2, force A K_n g n;
 // friction with the tethers of contact/surface_nodes.hpp, in the frame that moves with the surface (which
-// does not turn). The tangent is exact on a plane, without the curvature of the surface otherwise; friction
+// does not turn). The tangent is exact without friction, but for the curvature of level sets; friction
 // counts as the stiffness of its tethers while they hold, and as mu times that of the normal force when they
 // slip (unsymmetric). A level set's gradient is that of its smoothed interpolant, as in
 // contact/wall_contact.hpp. mm, uN, Pa/mm.
@@ -27,7 +27,8 @@ struct RigidShape {
   std::shared_ptr<const geometry::GridSdf> level_set;
   struct Near {
     double distance;
-    Vec3 normal;  ///< to the free side; zero on the axis or centre
+    Vec3 normal;               ///< to the free side; zero on the axis or centre
+    Mat3 turn = Mat3::Zero();  ///< d(normal)/dx; zero for level sets
   };
   /// The radius is larger by `growth`.
   Near near(const Vec3& x, double growth = 0) const;
@@ -60,6 +61,7 @@ class RigidSurfaceContact : public structure::ForceTerm {
   struct Touch {
     double overlap, force;
     Vec3 normal, place;  // place: in the surface's frame
+    Mat3 turn;           // of the normal
   };
   Touch touch(std::size_t i, const structure::Configuration& now) const;
 

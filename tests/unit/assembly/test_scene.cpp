@@ -123,6 +123,27 @@ std::array<double, 2> gradient_errors(const structure::ForceTerm& term, structur
   return error;
 }
 
+/// The tangent against the differences of the forces.
+void expect_tangent(const structure::ForceTerm& term, const structure::Configuration& now) {
+  structure::BlockMatrix k(now.x.size(), 0);
+  term.add_tangent(now, k);
+  const Points direction = shaken(Points(now.x.size(), Vec3::Zero()), 1);
+  Eigen::VectorXd u(3 * now.x.size());
+  for (std::size_t a = 0; a < now.x.size(); ++a) u.segment<3>(3 * a) = direction[a];
+  const Eigen::VectorXd by_matrix = k.times(u);
+  structure::Forces plus, minus;
+  plus.reset(now.x.size(), 0);
+  minus.reset(now.x.size(), 0);
+  structure::Configuration moved = now;
+  for (std::size_t a = 0; a < now.x.size(); ++a) moved.x[a] = now.x[a] + 1e-6 * direction[a];
+  term.add_forces(moved, plus);
+  for (std::size_t a = 0; a < now.x.size(); ++a) moved.x[a] = now.x[a] - 1e-6 * direction[a];
+  term.add_forces(moved, minus);
+  for (std::size_t a = 0; a < now.x.size(); ++a)
+    EXPECT_LT((by_matrix.segment<3>(3 * a) + (plus.force[a] - minus.force[a]) / 2e-6).norm(),
+              1e-5 * by_matrix.norm());
+}
+
 }  // namespace
 
 TEST(Scene, ComposesBodiesSetsAndSupports) {
@@ -147,8 +168,7 @@ divisions = [1, 1, 1]
 law = "neo-hookean"
 law_parameters = ["mu_Pa = 1e3"]
 )";
-  expect_refused(block,
-                 {"[[body]] 'block'", "'neo-hookean'", "volumetric", "bulk_modulus_kPa", "split"});
+  expect_refused(block, {"[[body]] 'block'", "'neo-hookean'", "volumetric", "bulk_modulus_kPa", "split"});
   EXPECT_NO_THROW(compose(read(block + "split = \"full\"\n")));
   EXPECT_NO_THROW(compose(read(block + "volumetric = \"quadratic\"\nbulk_modulus_kPa = 10\n")));
   EXPECT_NO_THROW(compose(read(block + "[fluid]\n")));
@@ -270,23 +290,24 @@ TEST(Scene, ClampTermIsTheTangentOfItsForces) {
   now.x = shaken(now.x, 0.05);
   for (const auto& term : s.terms) {
     if (!term->name().starts_with("edge of")) continue;
-    structure::BlockMatrix k(now.x.size(), 0);
-    term->add_tangent(now, k);
-    const Points direction = shaken(Points(now.x.size(), Vec3::Zero()), 1);
-    Eigen::VectorXd u(3 * now.x.size());
-    for (std::size_t a = 0; a < now.x.size(); ++a) u.segment<3>(3 * a) = direction[a];
-    const Eigen::VectorXd by_matrix = k.times(u);
-    structure::Forces plus, minus;
-    plus.reset(now.x.size(), 0);
-    minus.reset(now.x.size(), 0);
-    structure::Configuration moved = now;
-    for (std::size_t a = 0; a < now.x.size(); ++a) moved.x[a] = now.x[a] + 1e-6 * direction[a];
-    term->add_forces(moved, plus);
-    for (std::size_t a = 0; a < now.x.size(); ++a) moved.x[a] = now.x[a] - 1e-6 * direction[a];
-    term->add_forces(moved, minus);
-    for (std::size_t a = 0; a < now.x.size(); ++a)
-      EXPECT_LT((by_matrix.segment<3>(3 * a) + (plus.force[a] - minus.force[a]) / 2e-6).norm(),
-                1e-5 * by_matrix.norm());
+    expect_tangent(*term, now);
+  }
+}
+
+// Without friction, of bodies inside and outside of round surfaces, and on a plane.
+TEST(Scene, TangentOfContactWithRigidSurfaces) {
+  for (const char* surface :
+       {"surface = \"cylinder\"\ninside = true\ndirection = [1, 0, 0]\npoint_mm = [0, 0.4, 0]\nradius_mm = "
+        "0.6\n",
+        "surface = \"cylinder\"\ndirection = [0, 1, 0]\npoint_mm = [1, 0, -2]\nradius_mm = 2\n",
+        "surface = \"sphere\"\npoint_mm = [1, 0.4, -1]\nradius_mm = 1.2\n",
+        "surface = \"sphere\"\ninside = true\npoint_mm = [1, 0.4, 0]\nradius_mm = 0.8\n",
+        "surface = \"plane\"\ndirection = [0.2, 0.1, 1]\n"}) {
+    const Scene s = compose(read(plate + "[[contact_pair]]\nname = \"tool\"\nbody = \"sheet\"\n" + surface));
+    structure::Configuration now = s.system->state;
+    now.x = shaken(now.x, 0.03);
+    EXPECT_GT(s.surfaces.at("tool")->penetration_mm(now), 0.01) << surface;
+    expect_tangent(*s.surfaces.at("tool"), now);
   }
 }
 
