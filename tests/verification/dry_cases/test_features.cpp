@@ -263,6 +263,91 @@ end_s = 0.05
   EXPECT_NEAR(run->probe("speed_mm_per_s"), expected, 0.02 * expected);
 }
 
+// A zigzag ring of nitinol from a mesh file, crimped by a cylinder from 20 to 14 mm and let go: a plateau,
+// less force on the way back, and its shape again.
+TEST(DryFeatures, SuperelasticStentInACrimper) {
+  constexpr int struts = 12, beams = 4, count = struts * beams;
+  std::string points, lines;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * M_PI * i / count, up = static_cast<double>(i % beams) / beams;
+    points += fmt::format("{:.15g} {:.15g} {:.15g}\n", 10 * std::cos(angle), 10 * std::sin(angle),
+                          6 * (i / beams % 2 == 0 ? up : 1 - up));
+    lines += fmt::format("2 {} {}\n", i, (i + 1) % count);
+  }
+  std::string types;
+  for (int i = 0; i < count; ++i) types += "3\n";
+  const std::string file = fmt::format(
+      "# vtk DataFile Version 3.0\nring\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n{}CELLS {} "
+      "{}\n{}"
+      "CELL_TYPES {}\n{}",
+      count, points, count, 3 * count, lines, count, types);
+  const auto at = [](const std::string& name, const std::string& place, const std::string& hold) {
+    return "[[nodes]]\nname = \"" + name + "\"\nbody = \"ring\"\n" + place + test::support(name, hold);
+  };
+  const auto run =
+      CaseRun::of_text(R"(
+[[body]]
+name = "ring"
+kind = "beams"
+file = "ring.vtk"
+width_mm = 0.25
+depth_mm = 0.2
+depth = "radial"
+material = "nitinol-62.9"
+fibre_grid = [5, 3, 2]
+[[nodes]]
+name = "ring"
+body = "ring"
+)" + at("low", "select = \"plane\"\n", "[\"z\"]") +
+                           at("right", "select = \"nearest\"\npoint_mm = [10, 0, 0]\n", "[\"y\"]") +
+                           at("front", "select = \"nearest\"\npoint_mm = [0, 10, 6]\n", "[\"x\"]") +
+                           R"(
+[[contact_pair]]
+name = "crimper"
+body = "ring"
+surface = "cylinder"
+inside = true
+radius_mm = 10.2
+radius_change_mm = -3.2
+stiffness_kPa_per_mm = 1e5
+time_s = [0, 1, 2]
+factor = [0, 1, 0]
+[[probe]]
+name = "push"
+quantity = "contact_force"
+of = "crimper"
+component = "radial"
+[[probe]]
+name = "radius"
+quantity = "position"
+of = "ring"
+component = "radial"
+[dynamics]
+solver = "static"
+end_s = 2
+load_steps = 16
+)",
+                       {{"ring.vtk", file}});
+  std::vector<double> push{0}, radius{10};
+  while (!run->march->finished()) {
+    run->march->step();
+    push.push_back(-run->probe("push_N"));
+    radius.push_back(run->probe("radius_mm"));
+  }
+  std::printf("crimped ring: N at");
+  for (int k : {4, 6, 8, 10, 12}) std::printf(" %.2f mm %.3f,", radius[k], push[k]);
+  std::printf("\n");
+  EXPECT_LT(radius[8], 7.3);
+  EXPECT_LT(push[8] - push[6], 0.2 * (push[4] - push[2])) << "plateau";
+  for (int k : {10, 12, 14}) {
+    EXPECT_NEAR(radius[k], radius[16 - k], 0.05) << "the crimper is stiff";
+    EXPECT_LT(push[k], (k == 14 ? 1 : 0.9) * push[16 - k]) << k;  // at 14 hardly any martensite is left
+    EXPECT_GT(push[k], 0) << k;
+  }
+  EXPECT_NEAR(push[16], 0, 1e-9);
+  EXPECT_NEAR(radius[16], 10, 1e-6);
+}
+
 // A ring in a cylinder that closes: hoop force E A u/R, 2 pi of it inwards in all.
 TEST(DryFeatures, RingInACylinderThatCloses) {
   const auto run = CaseRun::of_text(R"(
