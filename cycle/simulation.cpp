@@ -33,6 +33,7 @@ Simulation::Simulation(MPI_Comm comm, const Inputs& in, const Parameters& p)
                      in.parent.source, in.low_z_mm, in.high_z_mm);
   terminals_ = std::make_unique<Terminals>(p.circulation, p.initialisation_s,
                                            p.fluid.density * grid.h * grid.cells[2] / area);
+  terminals_->require_bearable(p.coupling.limits.largest_s, in.parent.source);
   system_ = std::make_unique<coupling::ImmersedFlow>(
       *flow_, in.leaflets ? shell_of(comm, *in.leaflets, p) : nullptr, p.coupling);
   recorder_ = std::make_unique<Recorder>(in, p, *system_, std::move(device));

@@ -14,7 +14,7 @@ using namespace circulation;
 // An open valve of about 1.7 cm2: only the start of the beat depends on it.
 constexpr double ideal_valve_resistance = 0.02 * units::resistance_per_mmHg_s_per_mL;
 
-constexpr double lag_until = 0.25, share_of_inertance = 0.5, flow_probe = 1000;
+constexpr double lag_until = 0.125, softness = 0.1, flow_probe = 1000, most_per_step = 0.4;
 constexpr std::size_t own_numbers = 5;
 
 double smooth(double s) {
@@ -76,10 +76,11 @@ void Terminals::advance(double time_s, double dt_s, double low_flow, double high
       return terminal.pressure();
     };
     const double plain = answer(flow), slope = (answer(flow + flow_probe) - plain) / flow_probe;
-    const double way = dt_s / (share_of_inertance * inertance_);  // mm3/s by 1 Pa
-    if (!(way * slope > lag_until)) return answer(flow);
-    const double carried_on = last_dt_s_ > 0 ? dt_s / last_dt_s_ * (flow - last_flow) : 0;
-    return answer(flow + (carried_on + way * (before - plain)) / (1 + way * slope));
+    if (!(slope * dt_s / inertance_ > lag_until)) return answer(flow);
+    const double soft = softness * inertance_ / dt_s, stiff = slope / (soft + slope);
+    const double change = last_dt_s_ > 0 ? dt_s / last_dt_s_ * (flow - last_flow) : 0;
+    const double wanted = before + softness * (1 - stiff) * (plain - before) + stiff * soft * change;
+    return answer(flow + (wanted - plain) / slope);
   };
   const double low_resistance = heart_ ? parameters_.heart.outflow_resistance : 0;
   const double high_resistance =
@@ -91,6 +92,31 @@ void Terminals::advance(double time_s, double dt_s, double low_flow, double high
   last_low_ = -low_flow;
   last_high_ = high_flow;
   last_dt_s_ = dt_s;
+}
+
+void Terminals::require_bearable(double largest_step_s, const std::string& file) {
+  const double most = most_per_step * inertance_ / largest_step_s;
+  const auto check = [&](circulation::Terminal& terminal, const char* which) {
+    const std::vector<double> kept = terminal.save();
+    const auto answer = [&](double inflow) {
+      terminal.restore(kept);
+      terminal.advance(0, largest_step_s, inflow);
+      return terminal.pressure();
+    };
+    const double slope = (answer(flow_probe) - answer(0)) / flow_probe;
+    terminal.restore(kept);
+    if (slope > most)
+      throw InputError(
+          "{}: circulation: the {} end resists with {:.4g} mmHg s/mL within a step of {:.3g} s; expected at "
+          "most {:.4g}, "
+          "what the inertance of the blood in the vessel bears. Use a smaller cycle.max_step_s, or a smaller "
+          "resistance or "
+          "larger compliance there",
+          file, which, slope / units::resistance_per_mmHg_s_per_mL, largest_step_s,
+          most / units::resistance_per_mmHg_s_per_mL);
+  };
+  if (parameters_.upstream != Upstream::flow) check(*low_, "ventricle's");
+  check(*high_, "aortic");
 }
 
 double Terminals::ventricular_pressure() const {

@@ -4,12 +4,15 @@
 // beat starts, s = t / initialisation_s, 3 s^2 - 2 s^3; resistances next to the domain act already. A heart
 // with a Windkessel starts from the periodic beat of the 0D loop with an ideal valve.
 //
-// An end answers the flow Q of the step's start, as long as the slope Z = dP/dQ of its answer is small
-// against the domain's inertance, Z dt / L <= 1/8; a larger one would make flow and pressure swing against
-// each other, and grow from Z dt / L = 2 (5 mmHg s/mL in a valve at draft). Beyond, it answers the flow that
-// the domain will have under that answer, from L dQ/dt = P_d - P with P_d as in the last step and half of L
-// (so that the end is soft rather than unstable where L is overestimated):
-//   Q' = Q + [dt/dt_last (Q - Q_last) + dt/L (P_last - P(Q))] / (1 + Z dt/L).
+// An end answers the flow of the step's start, P(Q), as long as the slope Z = dP/dQ of its answer is small
+// against the domain's inertance, Z dt / L <= 1/8; a larger one makes flow and pressure swing against each
+// other, and grow (from some mmHg s/mL in a valve at draft). Beyond, the pressure goes towards that answer
+// within some ten steps and works against every change of the flow,
+//   P' = P_last + a (1 - k) (P(Q) - P_last) + k a L/dt (Q - Q_last) dt/dt_last,
+//   k = Z / (Z + a L/dt), a = 1/10,
+// and settles at P = P(Q). A column of blood of any such inertance bears that for any Z. The flow domain, in
+// which fluid also goes through what is solid until the next step, was stable at Z dt / L = 0.5 and not at
+// 0.9 (5 and 9 mmHg s/mL at draft): ends steeper than 0.4 L / dt are refused.
 #pragma once
 
 #include <memory>
@@ -28,6 +31,9 @@ class Terminals {
 
   /// Brings both ends to time_s + dt_s. flows: along +z through the low and the high end, mm3/s.
   void advance(double time_s, double dt_s, double low_flow, double high_flow);
+  /// InputError that names the end whose answer is steeper than 0.4 L / largest_step_s. A prescribed flow is
+  /// not looked at.
+  void require_bearable(double largest_step_s, const std::string& file);
   double low_pressure() const { return low_Pa_; }
   double high_pressure() const { return high_Pa_; }
 
