@@ -123,7 +123,7 @@ double ImmersedFlow::plan() {
     }
   }
   StepLimits limits = settings_.limits;
-  limits.safety *= caution_;
+  limits.safety *= caution_ * calm_.factor();
   limits.cfl *= caution_;
   if (body_ && body_->lead() == 0) limits.convection = 0;  // without the projection there is room enough
   const double critical = body_ ? critical_step() / std::sqrt(std::max(1.0, stiffening))
@@ -171,7 +171,13 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
   if (body_) {
     interpolate(flow_.velocity(), velocity_, true);
     body_->move(velocity_, done.dt_s);
-    for (std::size_t a = 0; a < velocity_.size(); ++a) change_[a] = velocity_[a] - last_velocity_[a];
+    double trembling = 0;
+    for (std::size_t a = 0; a < velocity_.size(); ++a) {
+      const Vec3 change = velocity_[a] - last_velocity_[a];
+      trembling = std::max(trembling, (change - change_[a]).squaredNorm());
+      change_[a] = change;
+    }
+    if (body_->lead() > 0) calm_.see(std::sqrt(trembling) * done.dt_s / flow_.grid().h);
     last_velocity_ = velocity_;
   }
   max_speed_ = done.fluid.max_speed;
@@ -192,21 +198,22 @@ std::map<std::string, state::Array> ImmersedFlow::save() const {
   }
   arrays["coupling/history"] = state::Array::of(
       std::vector<double>{static_cast<double>(steps_), last_dt_, max_speed_, caution_, power_.eigenvalue(),
-                          static_cast<double>(probed_), static_cast<double>(interval_)});
+                          static_cast<double>(probed_), static_cast<double>(interval_), calm_.factor()});
   return arrays;
 }
 
 void ImmersedFlow::load(const state::State& state) {
   flow_.load(state);
   const std::vector<double>& history = state.array("coupling/history").doubles("coupling/history");
-  if (history.size() != 7)
-    throw InputError("{}: coupling/history has {} entries, expected 7", state.source, history.size());
+  if (history.size() != 8)
+    throw InputError("{}: coupling/history has {} entries, expected 8", state.source, history.size());
   steps_ = static_cast<long>(history[0]);
   last_dt_ = history[1];
   max_speed_ = history[2];
   caution_ = history[3];
   probed_ = static_cast<long>(history[5]);
   interval_ = static_cast<int>(history[6]);
+  calm_.restore(history[7]);
   if (!body_) return;
   const auto points = [&](const char* name, std::size_t size) {
     Points read = state.array(name).points(name);

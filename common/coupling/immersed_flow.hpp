@@ -102,6 +102,7 @@ class ImmersedFlow {
   fluid::Planes forced_;  // where the last force may act
   Points force_, velocity_;
   Points at_points_;  // of the sampling
+  Calm calm_;
   long steps_ = 0, probed_ = 0;
   int interval_ = 0;  // to the next estimate
   double last_dt_ = 0, max_speed_ = 0, caution_ = 1;

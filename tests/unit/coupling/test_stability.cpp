@@ -118,16 +118,16 @@ TEST(ModelOfTheStep, DissipationLowersTheLimit) {
   EXPECT_GT(growth(4 * (1 - d) * 1.01, 0, 0, d), 1);
 }
 
-// The largest growth of waves of five cells and more, which the flow carries along either way, at the steps
-// that next_step plans.
-double worst_growth(double lead, double convection) {
+// The largest growth of waves of so many cells and more, which the flow carries along either way, at the
+// steps that next_step plans.
+double worst_growth(double lead, double convection, double cells = 5, double safety = 0.85) {
   double worst = 0;
   for (double cfl : {0.01, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35})
-    for (double kh = 0.2; kh <= 2 * M_PI / 5; kh += 0.1)
+    for (double kh = 0.2; kh <= 2 * M_PI / cells; kh += 0.1)
       for (double theta : {-cfl * kh, cfl * kh})
         for (double share : {0.1, 0.2, 0.4, 0.6, 0.8, 1.0}) {
           const double upwinding = cfl * std::pow(2 - 2 * std::cos(kh), 2) / 12;
-          const double lambda = share * lambda_at(lead, 0.85) * (1 - convection * cfl);
+          const double lambda = share * lambda_at(lead, safety) * (1 - convection * cfl);
           worst = std::max(worst, growth(lambda, lead, theta, upwinding));
         }
   return worst;
@@ -138,6 +138,24 @@ TEST(ModelOfTheStep, WithLeadAndConvectionInTheLimitNoWaveGrows) {
   EXPECT_LE(worst_growth(step_lead, convection), 1 + 1e-9);
   EXPECT_GT(worst_growth(0, convection), 1.02);
   EXPECT_GT(worst_growth(step_lead, 0), 1.02);
+}
+
+TEST(ModelOfTheStep, ShortWavesGrowAtTheWholeSafetyAndNotAtHalf) {
+  const double convection = StepLimits{}.convection, safety = StepLimits{}.safety;
+  EXPECT_GT(worst_growth(step_lead, convection, 3, safety), 1.02);
+  EXPECT_LE(worst_growth(step_lead, convection, 3, Calm::least * safety), 1 + 1e-9);
+}
+
+TEST(Calm, TremblingHalvesTheStepsAndCalmGivesThemBack) {
+  Calm calm;
+  for (int step = 0; step < 3; ++step) calm.see(2e-3);
+  EXPECT_NEAR(calm.factor(), 0.9 * 0.9 * 0.9, 1e-15);
+  for (int step = 0; step < 20; ++step) calm.see(1);
+  EXPECT_EQ(calm.factor(), 0.5);
+  for (int step = 0; step < 200; ++step) calm.see(5e-4);
+  EXPECT_NEAR(calm.factor(), 0.5 * std::pow(1.002, 200), 1e-12);
+  for (int step = 0; step < 200; ++step) calm.see(0);
+  EXPECT_EQ(calm.factor(), 1);
 }
 
 TEST(NextStep, ObeysEveryLimit) {
