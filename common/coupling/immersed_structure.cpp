@@ -87,6 +87,7 @@ ImmersedStructure::ImmersedStructure(structure::System& system,
     any_held = any_held || held_.back() != Mat3::Zero();
   }
   if (!any_held) held_.clear();
+  volumes_.emplace(settings_.cells, start.x, held_);
   if (settings_.sampling_mm) sampling_.emplace(settings_.cells, reference, *settings_.sampling_mm);
   structure::StiffnessBound bound;
   bound.reset(system_->nodes(), system_->rotational_nodes());
@@ -237,6 +238,8 @@ void ImmersedStructure::move(Points& velocity, double dt_s) {
     velocity[a] = state.v[a];
     state.x[a] += dt_s * velocity[a];
   }
+  if (settings_.volume_rate_per_s > 0 && !volumes_->empty())
+    volumes_->correct(std::min(1.0, settings_.volume_rate_per_s * dt_s), state.x);
   for (std::size_t t = 0; t < twin_of_.size(); ++t) {
     twin_velocity_[t] += dt_s / settings_.excess_mass_g[twin_of_[t]] * own_force_[t];
     twin_[t] += dt_s * twin_velocity_[t];

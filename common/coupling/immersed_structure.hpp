@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "coupling/immersed_body.hpp"
+#include "coupling/volume_keeper.hpp"
 #include "structure/force_term.hpp"
 
 namespace valsalva::coupling {
@@ -46,6 +47,8 @@ struct ImmersedStructureSettings {
   /// Of the forces, as step_lead for leaflets: steps of 1.9 times the length, but more error in time (the
   /// spinning disc of 8 cells a radius: 0.113 instead of 0.074).
   double lead = 0;
+  /// At which changes of volume of solids' cells are taken back (volume_keeper.hpp); 0: not.
+  double volume_rate_per_s = 0;
 };
 
 /// Of the nodes of a body: its masses in the System times 1 - rho_f/rho_s. excess_mass_g grows to one entry a
@@ -95,6 +98,8 @@ class ImmersedStructure : public ImmersedBody {
   Vec3 excess_momentum() const;
   /// Largest distance of a twin from its node, mm.
   double largest_slip() const;
+  /// Largest relative change of the volume of a solid's cell since the start.
+  double largest_volume_change() const { return volumes_->largest_change(x()); }
 
  private:
   std::size_t twins_begin() const { return system_->nodes(); }
@@ -114,6 +119,7 @@ class ImmersedStructure : public ImmersedBody {
   std::vector<double> rest_length_;
   double shortest_ = 0;
   std::optional<Sampling> sampling_;
+  std::optional<VolumeKeeper> volumes_;
   std::vector<Mat3> held_;    // projectors; empty when no node is held
   std::vector<int> twin_of_;  // the node of each twin
   Points twin_, twin_velocity_;

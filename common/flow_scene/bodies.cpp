@@ -213,6 +213,7 @@ void Bodies::immerse(const Case& scene, fluid::Flow& flow, const Frame& frame, d
   settings.tie_rate_per_s = tie_rate_ > 0 ? tie_rate_ : 1e-9;  // hardly any, for auto_tie_rate
   settings.rotation_damping_per_s = scene.real("coupling.rotation_damping_per_s");
   settings.lead = scene.real("coupling.lead");
+  settings.volume_rate_per_s = scene.real("coupling.volume_rate_per_s");
   if (!scene_.body_contacts.empty())
     settings.guard = [this](structure::System& moving, double dt) {
       Points to = moving.state.x;
@@ -362,6 +363,7 @@ std::map<std::string, double> Bodies::metrics() const {
           {"coupling_points", static_cast<double>(points_)},
           {"coupling_tie_rate_per_s", tie_rate_},
           {"coupling_largest_slip_mm", largest_slip_},
+          {"coupling_largest_volume_change", structure().largest_volume_change()},
           {"coupling_critical_step_s", std::isfinite(critical_s_) ? critical_s_ : 0},
           {"coupling_repeated_steps", static_cast<double>(repeats_)},
           {"coupling_slowed_nodes", static_cast<double>(slowed_)}};

@@ -18,6 +18,10 @@ void declare_coupling(Schema& schema) {
               "Angular frequency of the ties to excess masses, 40 times the motion's or more; 0: a quarter "
               "of what the structure's step allows");
   schema.real("coupling.rotation_damping_per_s", 0, not_negative(), "Damping of the rotations of beam nodes");
+  schema.real(
+      "coupling.volume_rate_per_s", 0, not_negative(),
+      "At which changes of the volume of solids' elements, which interpolation leaves, are taken back; "
+      "some hundred times the frequency of the motion; 0: not");
   schema.real("coupling.step_safety", 0.85, {0.05, 0.95}, "Time step over the computed stability limit");
   schema.real("coupling.lead", 0, {0, 0.5},
               "Share of the step by which elastic forces run ahead; 0.25 allows steps up to twice as long, for "
