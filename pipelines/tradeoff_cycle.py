@@ -1,13 +1,14 @@
 """make tradeoff, beating valve: figures of the beat against time over grid, leaflet mesh, kernel, coupling, step, convection.
 
     python3 pipelines/tradeoff_cycle.py [--scenes NAME ...] [--knobs WORD ...] [--values TEXT ...] [--ranks 2] [--again]
-                                        [--out docs/results] [--runs runs] [--list] [--tables]
+                                        [--out docs/results] [--runs runs] [--list] [--tables] [--take FOLDER]
 
 Every row is one beat of a scene with one knob moved from the base (draft: h = 1 mm, leaflet edges 0.5 mm, ib4, safety 0.85,
 upwind3). The stages before the beat run once for each leaflet mesh. OUT/cycle-tradeoff.csv is rewritten after every row and
 is the study's memory: a row that it holds with the same parameters is not run again (--again: it is), so that the study can
 be done in pieces, the cheap rows first; every row names its own commit, machine and load. --list: what is there and what is
-missing; --tables: only the tables and the plot anew. With OUT/structure-tradeoff.csv they make runs/tradeoff/tradeoff.csv.
+missing; --tables: only the tables and the plot anew; --take: the one row that is asked for is read from a beat that was run
+with the same parameters by other means. With OUT/structure-tradeoff.csv they make runs/tradeoff/tradeoff.csv.
 
 difference_pct: the largest difference of mean gradient, orifice area and stroke volume from the base's. <figure>_error_pct:
 from the value extrapolated to h = 0 (Richardson) with the order that the three finest grids of the scene show
@@ -18,6 +19,7 @@ docs/results.
 """
 
 import argparse
+import json
 import os
 import subprocess
 import sys
@@ -94,17 +96,31 @@ def beat(scene, knob, value, changes, options, digest):
         words = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", options.ranks] + words
     source = runs.provenance()
     result = runs.run_program(words + ["--from", state.resolve()], folder / f"{scene}-{knob}-{value}".replace(" ", "_"), 86400)
-    summary, metrics = result.get("summary", {}), result["metrics"]
-    status = summary.get("status", "failed")
-    if result["nan"]:
-        status = "not finite"
-    row = {"scene": scene, "knob": knob, "value": value, "status": status if status != "failed" else result["message"][:200],
-           "spacing_mm": (BASE | changes)["fluid.spacing_mm"], "leaflet_edge_mm": edge, "ranks": options.ranks,
-           "steps": summary.get("steps", ""), "simulated_s": summary.get("simulated_s", ""), "wall_s": round(result["wall_s"], 1),
-           "processor_s": round(result["processor_s"], 1), "memory_MiB": round(summary.get("peak_rss_MiB", 0)),
-           **{name: metrics.get(name, "") for name in FIGURES + OTHERS}}
-    return row | {"parameters": digest, "commit": summary.get("version", source["commit"]), "machine": source["machine"],
-                  "load_at_start": source["load_at_start"], "date": source["date"]}
+    status = "not finite" if result["nan"] else "ok" if result["exit"] == 0 else result["message"][:200]
+    return row_of(scene, knob, value, changes, digest, result.get("summary", {}), status, result["wall_s"], result["processor_s"], source)
+
+
+def row_of(scene, knob, value, changes, digest, summary, status, wall_s, processor_s, source):
+    metrics = summary.get("metrics", {})
+    settings = BASE | changes
+    return {"scene": scene, "knob": knob, "value": value, "status": status, "spacing_mm": settings["fluid.spacing_mm"],
+            "leaflet_edge_mm": settings["leaflet_edge_mm"], "ranks": summary.get("ranks", ""), "steps": summary.get("steps", ""),
+            "simulated_s": summary.get("simulated_s", ""), "wall_s": round(wall_s, 1), "processor_s": round(processor_s, 1),
+            "memory_MiB": round(summary.get("peak_rss_MiB", 0)), **{name: metrics.get(name, "") for name in FIGURES + OTHERS},
+            "parameters": digest, "commit": summary.get("version", source["commit"]), "machine": source["machine"],
+            "load_at_start": source["load_at_start"], "date": source["date"]}
+
+
+def taken(scene, knob, value, changes, folder, digest, source):
+    """The row of a beat that was run with the same parameters by other means on this machine, of its stage's folder; the ranks'
+    processors count as busy all the time."""
+    path = Path(folder) / "summary.json"
+    summary = json.loads(path.read_text())
+    if not summary["parameters_sha256"].startswith(digest.split("-")[0]) or summary["status"] != "ok":
+        sys.exit(f"error: {path} is not a finished beat with the parameters of {scene}, {knob} {value}")
+    when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(path.stat().st_mtime))
+    return row_of(scene, knob, value, changes, digest, summary, "ok", summary["wall_s"], summary["wall_s"] * summary["ranks"],
+                  source | {"load_at_start": "", "date": when})
 
 
 def spacing(row):
@@ -199,6 +215,7 @@ def main():
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--tables", action="store_true")
+    parser.add_argument("--take", type=Path, help="folder of the beat that is the one row asked for")
     options = parser.parse_args()
     if unknown := [knob for knob in options.knobs if knob not in KNOBS]:
         parser.error(f"--knobs: '{unknown[0]}' is none of {', '.join(KNOBS)}")
@@ -217,7 +234,10 @@ def main():
         if options.list or (done and not options.again):
             print(f"{scene}, {knob} {value}: {'done, ' + done[0]['commit'] if done else 'missing'}")
             continue
-        row = beat(scene, knob, value, changes, options, digest)
+        if options.take and len(asked) != 1:
+            parser.error("--take: name one scene, knob and value")
+        row = (taken(scene, knob, value, changes, options.take, digest, source) if options.take
+               else beat(scene, knob, value, changes, options, digest))
         rows = [other for other in rows if other not in same] + [row]
         write(rows, options, source)
         print(f"{time.monotonic() - START:6.0f} s  {scene}, {knob} {value}: {row['status']}, {row['steps']} steps, "

@@ -1,6 +1,7 @@
 """pipelines/tradeoff_cycle.py: calls the stages in their order, goes on where it was stopped, keeps its rows, extrapolates,
 marks the Pareto front, and writes the table of all parts."""
 
+import json
 import sys
 import tempfile
 from pathlib import Path
@@ -62,6 +63,22 @@ def main():
         worse = lambda a, b: float(a["processor_s"]) >= float(b["processor_s"]) and float(a["error_pct"]) > float(b["error_pct"])
         expect("nothing on the front is dearer and worse than another", front and not any(worse(a, b) for a in front for b in rows
                                                                                         if b["error_pct"] and b is not a), front)
+
+        words, _ = tradeoff_cycle.words_of("native-stenotic", {})
+        digest = tradeoff_cycle.digest_of(words, "")[:-1]
+        (folder / "other").mkdir()
+        (folder / "other" / "summary.json").write_text(json.dumps({
+            "status": "ok", "version": "other", "ranks": 2, "steps": 7, "wall_s": 3, "simulated_s": 0.88, "peak_rss_MiB": 1,
+            "parameters_sha256": digest + "rest", "metrics": {"mean_gradient_mmHg": 40, "eoa_cm2": 1, "stroke_volume_mL": 45}}))
+        one = ("--scenes", "native-stenotic", "--knobs", "grid", "--values", "1 mm", "--take", str(folder / "other"))
+        rows = study(*one)
+        row = next(row for row in rows if row["scene"] == "native-stenotic")
+        expect("a beat of the same parameters is taken over", (row["commit"], row["processor_s"], row["steps"]) == ("other", "6", "7"), row)
+        try:
+            study(*one[:5], "1.5 mm", *one[6:])
+            expect("one of others is refused", False)
+        except SystemExit as stop:
+            expect("one of others is refused", "not a finished beat" in str(stop), stop)
 
         (folder / "out" / "structure-tradeoff.csv").write_text(
             "# command: none; commit: abc; machine: M; date: D\npart,kind,resolution,exit,wall_s,processor_s,tip_mm,stress_kPa,tip_error,"
