@@ -135,7 +135,8 @@ Expectation expect(const std::vector<MeasuredBeat>& table, const std::string& va
   out.basis = fmt::format("measured: {}{} at h = {} mm", kind == "device" ? "device" : kind + " valve",
                           kind == valve ? "" : ", not this kind of valve,", grids);
   if (!out.error_pct.empty())
-    out.basis += fmt::format("; errors from the value extrapolated to h = 0 ({})", rows.front()->basis);
+    out.basis +=
+        fmt::format("; errors against the value at h = 0 or the finest grid ({})", rows.front()->basis);
   if (h < finest)
     out.basis += fmt::format("; h = {:g} mm was not: cost and error are carried on from {:g} mm", h, finest);
   else if (h > coarsest)

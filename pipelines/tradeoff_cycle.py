@@ -12,8 +12,8 @@ with the same parameters by other means. With OUT/structure-tradeoff.csv they ma
 
 difference_pct: the largest difference of mean gradient, orifice area and stroke volume from the base's. <figure>_error_pct:
 from the value extrapolated to h = 0 (Richardson) with the order that the three finest grids of the scene show
-(cycle-tradeoff-order.csv); where they show none, with first order, from the finest two; error_pct is the largest of the
-three. Pareto: no other row of the scene is both cheaper (processor time) and nearer. What `valsalva-cycle --estimate` and
+(cycle-tradeoff-order.csv); where they show none, from the finest grid, whose own error is then its difference from the next;
+error_pct is the largest of the first three. Pareto: no other row of the scene is both cheaper (processor time) and nearer. What `valsalva-cycle --estimate` and
 the accuracy band of a run go by is the part of these rows in cycle/measured.csv, which is written along with OUT =
 docs/results.
 """
@@ -137,8 +137,8 @@ def whole(rows, scene):
 
 
 def extrapolate(h, f):
-    """Value at h = 0, observed order (None where there is none, or fewer than three grids: first order is taken then) from the
-    finest grids, h ascending. None, None for a single grid."""
+    """Value at h = 0 and observed order from the three finest grids, h ascending; where they show none, or are fewer, the finest
+    value and None. None, None for a single grid."""
     if len(h) < 2:
         return None, None
     if len(h) > 2 and f[1] != f[0]:
@@ -148,7 +148,7 @@ def extrapolate(h, f):
         smallest = (h[2] ** 0.3 - h[1] ** 0.3) / (h[1] ** 0.3 - h[0] ** 0.3)
         if order is not None and ratio >= smallest:
             return f[0] - (f[1] - f[0]) / ((h[1] / h[0]) ** order - 1), order
-    return f[0] - (f[1] - f[0]) / (h[1] / h[0] - 1), None
+    return f[0], None
 
 
 def compare(rows):
@@ -170,13 +170,14 @@ def compare(rows):
         for figure in FIGURES:
             h, f = [spacing(row) for row in finest], [number(row, figure) for row in finest]
             limit, order = extrapolate(h, f)
-            basis.append("1 assumed" if order is None else f"{order:g}")
+            basis.append("none" if order is None else f"{order:g}")
             for row in mine:
-                if limit:
-                    row[f"{figure}_error_pct"] = round(100 * abs(number(row, figure) / limit - 1), 3)
+                # Without an order the finest value is off by what the next one differs from it, as far as is known.
+                value = f[1] if order is None and row is finest[0] else number(row, figure)
+                row[f"{figure}_error_pct"] = round(100 * abs(value / limit - 1), 3)
             orders.append({"scene": scene, "figure": figure, **{key: value for i in range(3) for key, value in (
                 (f"h{i + 1}_mm", h[i] if i < len(h) else ""), (f"value{i + 1}", f[i] if i < len(f) else ""))},
-                           "observed_order": "" if order is None else order, "extrapolated": round(limit, 5),
+                           "observed_order": "" if order is None else order, "extrapolated": "" if order is None else round(limit, 5),
                            "finest_error_pct": finest[0][f"{figure}_error_pct"]})
         for row in mine:
             row["error_basis"] = f"grids {' '.join(row2['spacing_mm'] for row2 in finest)} mm, orders {' '.join(basis)}"
