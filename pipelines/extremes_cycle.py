@@ -1,6 +1,6 @@
 """make extremes, beating valve: values pushed until accuracy, then the run, is lost.
 
-    python3 pipelines/extremes_cycle.py [OUT] [--only PART ...] [--again]     needs build/bin/valsalva-cycle
+    python3 pipelines/extremes_cycle.py [OUT] [--only PART ...] [--names RUN ...] [--again]     needs build/bin/valsalva-cycle
 
 The valve of leaflet-flutter-2022 in a shortened vessel at h = 1.5 mm, some milliseconds of its motion, unless a part says
 otherwise. For each value: the exit code (0 done; 2 refused as input; 3 stopped with the last good state), an error where
@@ -10,8 +10,8 @@ OUT/cycle-extremes.csv (docs/results), and the limits read from it: OUT/cycle-ex
 structure: runs/extremes/extremes.csv and .png.
 
 A run that was made before with the same words is not repeated, whatever the program's version, which every row names;
---again repeats the parts that are asked for. With --only (names of the functions here) the other parts' rows are those of
-earlier runs.
+--again repeats what is asked for. With --only (names of the functions here) or --names (folders in runs/extremes/cycle) the
+other rows are those of earlier runs.
 """
 
 import argparse
@@ -27,7 +27,7 @@ from extremes import FOLDER, RESULTS, Extremes
 
 STUDY = Extremes("cycle")
 CASES = runs.ROOT / "pipelines" / "cases"
-AGAIN, STORED_ONLY = False, False
+AGAIN, STORED_ONLY, NAMES = False, False, []
 # Shortened vessel, leaflet edges of half a cell.
 VALVE = {"fluid.spacing_mm": 1.5, "test_section.z_mm": [-15, 0, 20.4, 40], "test_section.radius_mm": [11.5, 11.5, 13.5, 14.3],
          "body.leaflets.divisions": [32, 15], "cycle.initialisation_s": 0.01, "output.checkpoint_s": 1e5, "cycle.history_interval": 5}
@@ -53,7 +53,7 @@ def run(name, changes, case="leaflet-flutter-2022", base=VALVE, timeout_s=900, s
         stored = json.loads(note.read_text())
         if stored["words"] == hashlib.sha256(spoken.encode()).hexdigest():
             return stored
-    if STORED_ONLY:
+    if STORED_ONLY or (NAMES and name not in NAMES):
         return None
     result = runs.run_program(words, out, timeout_s)
     result["version"] = result.get("summary", {}).get("version", "") or version()
@@ -298,16 +298,17 @@ PARTS = (reynolds, resistance, compliance, closed_pressure, stiffness, thickness
 
 
 def main():
-    global AGAIN, STORED_ONLY
+    global AGAIN, STORED_ONLY, NAMES
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("out", nargs="?", type=Path, default=RESULTS)
     parser.add_argument("--only", nargs="*", default=[])
     parser.add_argument("--again", action="store_true")
+    parser.add_argument("--names", nargs="*", default=[], help="these runs alone (folders of runs/extremes/cycle); of the others what is there")
     options = parser.parse_args()
     unknown = [name for name in options.only if name not in [part.__name__ for part in PARTS]]
     if unknown:
         parser.error(f"--only: no part is called {unknown[0]}; expected {', '.join(part.__name__ for part in PARTS)}")
-    AGAIN = options.again
+    AGAIN, NAMES = options.again, options.names
     source, start = runs.provenance(), time.monotonic()
     for part in PARTS:
         STORED_ONLY = bool(options.only) and part.__name__ not in options.only
