@@ -98,8 +98,8 @@ class ImmersedFlow {
   PowerIteration power_;
   Points last_velocity_, change_;  // of the unknowns in the last step; its difference to the step before
   Points probed_x_;                // where lambda_max was last looked for
-  fluid::FaceField scratch_;  // of the probe's products; zero between them
-  fluid::Planes forced_;  // where the last force may act
+  fluid::FaceField scratch_;       // of the probe's products; zero between them
+  fluid::Planes forced_;           // where the last force may act
   Points force_, velocity_;
   Points at_points_;  // of the sampling
   Calm calm_;

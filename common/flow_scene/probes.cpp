@@ -112,9 +112,8 @@ Probes::Probes(const Case& scene, const Sides& sides, const Obstacles& obstacles
         out.push_back(m.flow.openings().pressure(opening));
       });
     } else if (quantity == "pressure_iterations") {
-      add({name}, [](const Measured& m, std::vector<double>& out) {
-        out.push_back(m.flow.pressure_iterations());
-      });
+      add({name},
+          [](const Measured& m, std::vector<double>& out) { out.push_back(m.flow.pressure_iterations()); });
     } else if (quantity == "force" || quantity == "moment") {
       std::vector<std::string> names{e.text("of")}, soft;
       names.insert(names.end(), e.texts("with").begin(), e.texts("with").end());

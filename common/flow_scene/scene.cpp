@@ -66,7 +66,8 @@ fluid::Grid grid_of(const Case& scene, const Sides& sides) {
 
 fluid::FlowParameters parameters_of(const Case& scene, const Sides& sides) {
   fluid::FlowParameters p;
-  if (sides.fluid_cells()) p.krylov = fluid::KrylovSettings{.tolerance = scene.real("fluid.pressure_tolerance")};
+  if (sides.fluid_cells())
+    p.krylov = fluid::KrylovSettings{.tolerance = scene.real("fluid.pressure_tolerance")};
   p.density = scene.real("fluid.density_g_per_mm3");
   p.viscosity = scene.real("fluid.viscosity_Pa_s");
   p.order = static_cast<int>(scene.integer("fluid.order"));

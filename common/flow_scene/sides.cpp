@@ -81,8 +81,8 @@ Sides::Sides(const Case& scene) : openings_(scene) {
               "{}: outflow sides along {} and along {}; the direct pressure solver knows pressure along one "
               "axis only: leave fluid.pressure_solver, or give the others as inflow with a known velocity",
               scene.file().string(), axis_name[open_axis], axis_name[axis]);
-        cut_[axis][side] = openings_.add_side(name_of({axis, side}), axis, side,
-                                              KnownPressure(scene, entry, "boundary"));
+        cut_[axis][side] =
+            openings_.add_side(name_of({axis, side}), axis, side, KnownPressure(scene, entry, "boundary"));
       }
       open = true;
     }
@@ -240,7 +240,8 @@ void Sides::advance(fluid::Flow& flow, double time_s, double dt_s) {
 
 double Sides::side_flow(const fluid::Flow& flow, const SideOfBox& side) const {
   const int opening = cut_[side.axis][side.side];
-  return opening < 0 ? flow.outflow(frame_.solver_axis(side.axis), side.side) : openings_.outflow(flow, opening);
+  return opening < 0 ? flow.outflow(frame_.solver_axis(side.axis), side.side)
+                     : openings_.outflow(flow, opening);
 }
 
 double Sides::largest_speed(const fluid::Flow& flow) const {

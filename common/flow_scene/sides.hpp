@@ -1,6 +1,6 @@
-// The six sides of the box: [[boundary]] as the flow's boundaries, and what they prescribe over time; with the
-// openings inside the box. Outflow sides of one axis are the flow's open sides; those of further axes become
-// openings, for which the box is some cells longer there.
+// The six sides of the box: [[boundary]] as the flow's boundaries, and what they prescribe over time; with
+// the openings inside the box. Outflow sides of one axis are the flow's open sides; those of further axes
+// become openings, for which the box is some cells longer there.
 #pragma once
 
 #include <memory>

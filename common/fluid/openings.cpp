@@ -326,7 +326,8 @@ void Openings::keep_joined(const std::function<bool(int, int, int)>& solves, Sol
   for (int o = 0; o < count(); ++o) {
     if (left[2 * o] == 0 || (known_flow(o) && !(left[2 * o + 1] > 0)))
       throw InputError(
-          "fluid: the opening '{}' is joined with no place of known pressure; give the vessel an opening or an "
+          "fluid: the opening '{}' is joined with no place of known pressure; give the vessel an opening or "
+          "an "
           "outflow side of known pressure that it reaches",
           planes_[o].name);
   }

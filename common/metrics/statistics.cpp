@@ -23,8 +23,8 @@ double weighted_percentile(const std::vector<double>& values, const std::vector<
   while (to - from > 1) {
     const auto middle = from + (to - from) / 2;
     std::nth_element(from, middle, to, smaller);
-    const double lower = std::accumulate(from, middle, below,
-                                         [&](double sum, std::size_t i) { return sum + weights[i]; });
+    const double lower =
+        std::accumulate(from, middle, below, [&](double sum, std::size_t i) { return sum + weights[i]; });
     if (lower >= wanted) {
       to = middle;
     } else {

@@ -12,9 +12,10 @@ void declare_box(Schema& schema) {
   schema.integer("fluid.order", 2, {2, 4}, "Order in space, 2 or 4; 4 in boxes that are periodic all round");
   schema.choice("fluid.time_scheme", "ab2", {"ab2", "rk3"},
                 "Adams-Bashforth 2, or Runge-Kutta 3: three times the work, three times the step");
-  schema.choice("fluid.pressure_solver", "auto", {"auto", "direct", "krylov"},
-                "In a box: direct (all cells, known pressure on sides of one axis), krylov (cells of the fluid "
-                "alone, tight walls, openings anywhere), or auto: direct wherever it can");
+  schema.choice(
+      "fluid.pressure_solver", "auto", {"auto", "direct", "krylov"},
+      "In a box: direct (all cells, known pressure on sides of one axis), krylov (cells of the fluid "
+      "alone, tight walls, openings anywhere), or auto: direct wherever it can");
   schema.real("fluid.pressure_tolerance", 1e-8, {1e-14, 1e-2},
               "krylov: divergence that is left, root mean square over the cells, of largest speed / cell");
   schema.real("fluid.end_s", 1, positive(), "End of the run");

@@ -52,8 +52,7 @@ int main(int argc, char** argv) {
                   r.peak_time, r.rms);
     }
   } else {
-    std::fprintf(stderr,
-                 "usage: study_fluid cavity|cylinder|sphere|taylor-green ...; see study.cpp\n");
+    std::fprintf(stderr, "usage: study_fluid cavity|cylinder|sphere|taylor-green ...; see study.cpp\n");
     return 2;
   }
 }
