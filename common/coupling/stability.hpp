@@ -15,10 +15,9 @@
 //     and lower the limit to 2 / sqrt(lambda (1 + 2 a)).
 //   - Where the flow is fast that is not enough: dt^2 = limit^2 (1 - 2 CFL) keeps all waves of five cells and
 //     more from growing, at any CFL number up to 0.35.
-//   - Waves of three and four cells, of a fold beside the attachment, still grow by a percent a step or so.
-//   At
-//     half the safety they do not. They show as trembling, |u(n) - 2 u(n-1) + u(n-2)| dt of a node: 1e-6 to
-//     1e-4 cells in calm motion, 1e-2 in a burst. Beyond 1e-3 cells steps shrink, down to that half (Calm).
+//   - Waves of three and four cells, of a fold beside the attachment, still grow by a percent a step or so;
+//     at half the safety they do not. They show as trembling, |u(n) - 2 u(n-1) + u(n-2)| dt of a node: 1e-6
+//     to 1e-4 cells in calm motion, 1e-2 in a burst. Beyond 1e-3 cells steps shrink, down to half (Calm).
 // docs/decisions/time-step.md derives it; unit.coupling.ModelOfTheStep.* solves the model problem.
 //
 // A warm start follows one mode. Where another, local one stiffens past it (a fold that is pulled straight

@@ -29,7 +29,7 @@
 // and solves for the pressure with the same operators (poisson_periodic.hpp).
 //
 // Order of calls in one step, forces known at its start:
-//     flow.clear_force(); (spread into flow.force()); flow.predict(dt); flow.project(dt);
+//     (set flow.force(), or add to it); flow.predict(dt); flow.project(dt);
 // or, for a force that depends on the predicted velocity:
 //     flow.predict(dt, {.old_pressure = false, .penalise = false}); ... flow.add_impulse(...);
 //     flow.penalise(dt); flow.project(dt);
@@ -108,7 +108,6 @@ class Flow {
   const Field& pressure() const { return pressure_; }
   /// Force density on the fluid, micronewton/mm3, on the owned faces.
   FaceField& force() { return force_; }
-  void clear_force() { force_.fill(0); }
   /// Adds what was spread into ghost faces to the ranks (or periodic images) that own them.
   void accumulate_force() { accumulate_ghosts(slab_, boundaries_, force_); }
   void fill_ghosts();
