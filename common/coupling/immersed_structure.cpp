@@ -119,6 +119,7 @@ double ImmersedStructure::stiffening(double strain) const {
 
 void ImmersedStructure::moved() {
   if (sampling_) sampling_->locate(system_->state.x);
+  if (keeps_volume()) volumes_->update(system_->state.x);
 }
 
 void ImmersedStructure::set_x(Points x) {
@@ -152,21 +153,33 @@ void ImmersedStructure::begin_step(double dt_s, const Points& last_velocity) {
   for (std::size_t a = 0; a < ahead_.x.size(); ++a) ahead_.x[a] += lead() * dt_s * last_velocity[a];
 }
 
+Vec3 ImmersedStructure::tie_force(std::size_t twin) const {
+  const int a = twin_of_[twin];
+  return settings_.excess_mass_g[a] * settings_.tie_rate_per_s * settings_.tie_rate_per_s *
+         (twin_[twin] - x()[a]);
+}
+
+void ImmersedStructure::leave_out_constraints(Points& force) const {
+  if (!keeps_volume()) return;
+  for (std::size_t t = 0; t < twin_of_.size(); ++t) force[twin_of_[t]] += tie_force(t);
+  volumes_->constrain_force(force);
+  for (std::size_t t = 0; t < twin_of_.size(); ++t) force[twin_of_[t]] -= tie_force(t);
+}
+
 void ImmersedStructure::forces(Points& out) {
   const std::size_t nodes = system_->nodes();
   stored_ = term_forces(ahead_, here_);
   out = here_.force;
   out.resize(unknowns(), Vec3::Zero());
-  const double square = settings_.tie_rate_per_s * settings_.tie_rate_per_s;
   for (std::size_t t = 0; t < twin_of_.size(); ++t) {
     const int a = twin_of_[t];
-    const double stiffness = settings_.excess_mass_g[a] * square;
-    const Vec3 slip = twin_[t] - x()[a];
-    out[a] += stiffness * slip;
-    out[twins_begin() + t] = -stiffness * slip;
-    stored_ += 0.5 * stiffness * slip.squaredNorm();
+    const Vec3 tie = tie_force(t);
+    out[a] += tie;
+    out[twins_begin() + t] = -tie;
+    stored_ += 0.5 * tie.dot(twin_[t] - x()[a]);
   }
   std::copy(here_.moment.begin(), here_.moment.end(), out.begin() + rotations_begin());
+  if (keeps_volume()) volumes_->constrain_force(out);
   pull_.setZero();
   if (!held_.empty())
     for (std::size_t a = 0; a < nodes; ++a) {
@@ -189,8 +202,9 @@ void ImmersedStructure::tangent_product(const Points& direction, Points& out) co
   double length = 0, angle = 0;
   for (std::size_t a = 0; a < nodes; ++a) {
     free[a] = free_part(static_cast<int>(a), direction[a]);
-    length = std::max(length, free[a].norm());
   }
+  if (keeps_volume()) volumes_->constrain_velocity(free);
+  for (const Vec3& each : free) length = std::max(length, each.norm());
   for (std::size_t r = 0; r < turns; ++r) {
     const Vec3& w = direction[rotations_begin() + r];
     spin[r] = w - system_->held_axes(static_cast<int>(r)) * w;
@@ -217,6 +231,7 @@ void ImmersedStructure::tangent_product(const Points& direction, Points& out) co
     out[a] += pull;
     out[twins_begin() + t] -= pull;
   }
+  if (keeps_volume()) volumes_->constrain_force(out);
   for (std::size_t a = 0; a < nodes; ++a) out[a] = free_part(static_cast<int>(a), out[a]);
 }
 
@@ -233,13 +248,12 @@ void ImmersedStructure::move(Points& velocity, double dt_s) {
           velocity[a].norm(), fastest_mm_per_s);
     state.v[a] = velocity[a];
   }
+  if (keeps_volume()) volumes_->constrain_velocity(state.v, dt_s);
   if (settings_.guard) settings_.guard(*system_, dt_s);
   for (std::size_t a = 0; a < state.x.size(); ++a) {
     velocity[a] = state.v[a];
     state.x[a] += dt_s * velocity[a];
   }
-  if (settings_.volume_rate_per_s > 0 && !volumes_->empty())
-    volumes_->correct(std::min(1.0, settings_.volume_rate_per_s * dt_s), state.x);
   for (std::size_t t = 0; t < twin_of_.size(); ++t) {
     twin_velocity_[t] += dt_s / settings_.excess_mass_g[twin_of_[t]] * own_force_[t];
     twin_[t] += dt_s * twin_velocity_[t];

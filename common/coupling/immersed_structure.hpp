@@ -47,8 +47,8 @@ struct ImmersedStructureSettings {
   /// Of the forces, as step_lead for leaflets: steps of 1.9 times the length, but more error in time (the
   /// spinning disc of 8 cells a radius: 0.113 instead of 0.074).
   double lead = 0;
-  /// At which changes of volume of solids' cells are taken back (volume_keeper.hpp); 0: not.
-  double volume_rate_per_s = 0;
+  /// Do solids keep the volume of each of their parts (volume_keeper.hpp)?
+  bool keep_volume = false;
 };
 
 /// Of the nodes of a body: its masses in the System times 1 - rho_f/rho_s. excess_mass_g grows to one entry a
@@ -98,13 +98,18 @@ class ImmersedStructure : public ImmersedBody {
   Vec3 excess_momentum() const;
   /// Largest distance of a twin from its node, mm.
   double largest_slip() const;
-  /// Largest relative change of the volume of a solid's cell since the start.
+  /// Of the terms' nodal forces at the present shape: without what keeping volumes takes up of them and of
+  /// the ties' forces, which is what does not reach the fluid.
+  void leave_out_constraints(Points& force) const;
+  /// Largest relative change of the volume of a solid's part since the start.
   double largest_volume_change() const { return volumes_->largest_change(x()); }
 
  private:
   std::size_t twins_begin() const { return system_->nodes(); }
   std::size_t rotations_begin() const { return twins_begin() + twin_of_.size(); }
   void moved();
+  Vec3 tie_force(std::size_t twin) const;
+  bool keeps_volume() const { return settings_.keep_volume && !volumes_->empty(); }
   Vec3 free_part(int node, const Vec3& v) const;
   double term_forces(const structure::Configuration& at, structure::Forces& out) const;
   double abrupt_stiffness() const;

@@ -5,7 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/errors.hpp"
+
 namespace valsalva::coupling {
+
+namespace {
+
+// Of the mean diagonal: parts whose pressures no motion tells apart (checkerboards) and parts that are held.
+constexpr double regular = 1e-10;
+
+Eigen::Map<Eigen::VectorXd> flat(Points& points, Eigen::Index size) {
+  return {points.front().data(), size};
+}
+
+}  // namespace
 
 VolumeKeeper::VolumeKeeper(std::span<const Cell> cells, const Points& start, const std::vector<Mat3>& held)
     : held_(held) {
@@ -13,13 +26,26 @@ VolumeKeeper::VolumeKeeper(std::span<const Cell> cells, const Points& start, con
     slope_.emplace_back(structure::evaluate(structure::Shape::hex8, point.at).gradient);
     weight_.push_back(point.weight);
   }
-  std::vector<int> at_node(start.size(), 0);
+  std::vector<int> around(start.size(), -1);  // the part of the tetrahedra around a node
+  int parts = 0;
   for (const Cell& cell : cells) {
     if (cell.count != 4 && cell.count != 8) continue;
     cells_.push_back(cell);
-    start_.push_back(volume(cell, start, nullptr));
-    for (int i = 0; i < cell.count; ++i) most_at_node_ = std::max(most_at_node_, ++at_node[cell.nodes[i]]);
+    std::vector<int>& mine = parts_of_.emplace_back();
+    if (cell.count == 8) {
+      mine.push_back(parts++);
+      continue;
+    }
+    for (int i = 0; i < 4; ++i) {
+      int& part = around[cell.nodes[i]];
+      if (part < 0) part = parts++;
+      mine.push_back(part);
+    }
   }
+  start_.setZero(parts);
+  gradient_.resize(parts, 3 * static_cast<Eigen::Index>(start.size()));
+  free_gradient_.resize(gradient_.rows(), gradient_.cols());
+  start_ = now_ = volumes(start);
 }
 
 double VolumeKeeper::volume(const Cell& cell, const Points& x, std::array<Vec3, 8>* gradient) const {
@@ -51,29 +77,71 @@ double VolumeKeeper::volume(const Cell& cell, const Points& x, std::array<Vec3, 
   return sum;
 }
 
-void VolumeKeeper::correct(double share, Points& x) const {
-  Points motion(x.size(), Vec3::Zero());
+Eigen::VectorXd VolumeKeeper::volumes(const Points& x) const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(start_.size());
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    const double each = volume(cells_[c], x, nullptr);
+    for (int part : parts_of_[c]) sum[part] += each;
+  }
+  return sum;
+}
+
+void VolumeKeeper::update(const Points& x) {
+  std::vector<Eigen::Triplet<double>> all, free;
   std::array<Vec3, 8> gradient;
+  now_.setZero(start_.size());
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const Cell& cell = cells_[c];
-    const double missing = start_[c] - volume(cell, x, &gradient);
-    double square = 0;
+    const double each = volume(cell, x, &gradient);
+    for (int part : parts_of_[c]) now_[part] += each;
     for (int i = 0; i < cell.count; ++i) {
-      if (!held_.empty()) gradient[i] -= held_[cell.nodes[i]] * gradient[i];
-      square += gradient[i].squaredNorm();
+      const int a = cell.nodes[i];
+      const Vec3 of_free = held_.empty() ? gradient[i] : Vec3(gradient[i] - held_[a] * gradient[i]);
+      for (int d = 0; d < 3; ++d)
+        for (int part : parts_of_[c]) {
+          all.emplace_back(part, 3 * a + d, gradient[i][d]);
+          free.emplace_back(part, 3 * a + d, of_free[d]);
+        }
     }
-    if (!(square > 0)) continue;
-    const double by = share * missing / (most_at_node_ * square);
-    for (int i = 0; i < cell.count; ++i) motion[cell.nodes[i]] += by * gradient[i];
   }
-  for (std::size_t a = 0; a < x.size(); ++a) x[a] += motion[a];
+  gradient_.setFromTriplets(all.begin(), all.end());
+  free_gradient_.setFromTriplets(free.begin(), free.end());
+  Eigen::SparseMatrix<double> product = free_gradient_ * Sparse(free_gradient_.transpose());
+  const double add = regular * product.diagonal().mean();
+  product.diagonal().array() += add;
+  if (!analysed_) inverse_.analyzePattern(product);
+  analysed_ = true;
+  inverse_.factorize(product);
+  if (inverse_.info() != Eigen::Success || !inverse_.vectorD().allFinite())
+    throw NumericalFailure(
+        "coupling: the volumes of solids' elements cannot be kept, some have collapsed (the largest change "
+        "of a volume is by {:.3g} times)",
+        largest_change(x));
+}
+
+void VolumeKeeper::constrain_force(Points& force) const {
+  auto f = flat(force, gradient_.cols());
+  const Eigen::VectorXd pressure = inverse_.solve(free_gradient_ * f);
+  f -= gradient_.transpose() * pressure;
+}
+
+void VolumeKeeper::constrain_velocity(Points& velocity, const Eigen::VectorXd& growth) const {
+  auto u = flat(velocity, gradient_.cols());
+  const Eigen::VectorXd pressure = inverse_.solve(gradient_ * u - growth);
+  u -= free_gradient_.transpose() * pressure;
+}
+
+void VolumeKeeper::constrain_velocity(Points& velocity) const {
+  constrain_velocity(velocity, Eigen::VectorXd::Zero(start_.size()));
+}
+
+void VolumeKeeper::constrain_velocity(Points& velocity, double dt_s) const {
+  constrain_velocity(velocity, Eigen::VectorXd((start_ - now_) / dt_s));
 }
 
 double VolumeKeeper::largest_change(const Points& x) const {
-  double largest = 0;
-  for (std::size_t c = 0; c < cells_.size(); ++c)
-    largest = std::max(largest, std::abs(volume(cells_[c], x, nullptr) / start_[c] - 1));
-  return largest;
+  if (empty()) return 0;
+  return (volumes(x).array() / start_.array() - 1).abs().maxCoeff();
 }
 
 }  // namespace valsalva::coupling

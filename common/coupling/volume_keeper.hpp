@@ -1,4 +1,4 @@
-// Keeps the volume of every cell of immersed solids.
+// Keeps the volume of every part of immersed solids.
 //
 // The fluid's velocity is free of divergence, and so bodies that move with it keep the volume of each of
 // their parts. What nodes take of it (quadrature and averages over elements, or linear interpolation between
@@ -7,18 +7,21 @@
 // In a bar two cells thick, parts above and below the middle plane came to differ in volume by three times
 // the strain of bending, with the opposite deviatoric strain: the bar lost its stiffness against bending.
 //
-// Every step moves free nodes a part of the way back, cell by cell and all at once:
-//   x_a += sum_c s (V0_c - V_c) / (n S_c) g_ca,   g_ca = P_a dV_c/dx_a,  S_c = sum_a |g_ca|^2
-// with the share s = min(1, rate dt), V0 the volume at the start, P_a the projector on free directions and n
-// the largest number of cells at a node: the sum over cells is then a contraction. In refinement the motion
-// goes to zero with the truncation error.
+// So the volumes V_c of the parts are constraints. With G = dV/dx, H the projector on held directions and
+// P = 1 - H, the coupling's interpolation J and spreading S = J^T become M J and S M^T,
+//   M = 1 - P G^T (G P G^T)^-1 G,
+// on the same shape: adjoint, so that forces do on the fluid the work that they do on the body, and no energy
+// comes in. Forces and torques of free bodies are kept, as G of a rigid motion is zero. What the shape's
+// change within a step leaves (second order in dt) is taken back with the next.
 //
-// Limits: the motion is not adjoint to the spreading of forces, so that energy may be put in; the rate is to
-// be as low as the motion allows (docs/verification/flow-bodies.md).
-//
-// Cells: tetrahedra (4 nodes) and hexahedra (8 nodes, Gauss 2 x 2 x 2, which is exact for their volume).
+// Parts: each hexahedron (a mean volume, as the constant pressure of Q1-P0 elements: no locking); of
+// tetrahedra, which would lock, those around each node together.
 #pragma once
 
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,18 +36,31 @@ class VolumeKeeper {
   VolumeKeeper(std::span<const Cell> cells, const Points& start, const std::vector<Mat3>& held);
 
   bool empty() const { return cells_.empty(); }
-  /// share: s, up to 1.
-  void correct(double share, Points& x) const;
-  /// The largest relative change of a cell's volume.
+  std::size_t parts() const { return start_.size(); }
+  /// The shape that the following calls are about. NumericalFailure when parts have collapsed.
+  void update(const Points& x);
+  /// F := M^T F + what the constraint pulls at held directions. The first entries are the nodes'.
+  void constrain_force(Points& force) const;
+  /// U := M U, the nearest velocity that keeps all volumes; with dt that which takes their change back in dt.
+  void constrain_velocity(Points& velocity) const;
+  void constrain_velocity(Points& velocity, double dt_s) const;
+  /// The largest relative change of a part's volume.
   double largest_change(const Points& x) const;
 
  private:
+  using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
   double volume(const Cell& cell, const Points& x, std::array<Vec3, 8>* gradient) const;
+  Eigen::VectorXd volumes(const Points& x) const;
+  void constrain_velocity(Points& velocity, const Eigen::VectorXd& growth) const;
 
   std::vector<Cell> cells_;
-  std::vector<double> start_;
+  std::vector<std::vector<int>> parts_of_;  // of each cell: the parts that it belongs to
+  Eigen::VectorXd start_, now_;             // volumes
   std::vector<Mat3> held_;
-  int most_at_node_ = 1;
+  Sparse gradient_, free_gradient_;  // G, G P
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> inverse_;
+  bool analysed_ = false;
   std::vector<Eigen::Matrix<double, 3, 8>> slope_;  // of the hexahedron's functions at the Gauss points
   std::vector<double> weight_;
 };

@@ -213,7 +213,7 @@ void Bodies::immerse(const Case& scene, fluid::Flow& flow, const Frame& frame, d
   settings.tie_rate_per_s = tie_rate_ > 0 ? tie_rate_ : 1e-9;  // hardly any, for auto_tie_rate
   settings.rotation_damping_per_s = scene.real("coupling.rotation_damping_per_s");
   settings.lead = scene.real("coupling.lead");
-  settings.volume_rate_per_s = scene.real("coupling.volume_rate_per_s");
+  settings.keep_volume = scene.boolean("coupling.keep_volume");
   if (!scene_.body_contacts.empty())
     settings.guard = [this](structure::System& moving, double dt) {
       Points to = moving.state.x;
@@ -334,6 +334,7 @@ Obstacles::Load Bodies::load_on(const std::string& name, const Vec3& about) cons
   structure::Forces f;
   f.reset(system.nodes(), system.rotational_nodes());
   for (const auto& term : scene_.terms) term->add_forces(system.state, f);
+  structure().leave_out_constraints(f.force);
   Obstacles::Load load{Vec3::Zero(), Vec3::Zero()};
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     const BuiltBody& body = scene_.bodies[b];

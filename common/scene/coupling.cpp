@@ -18,10 +18,9 @@ void declare_coupling(Schema& schema) {
               "Angular frequency of the ties to excess masses, 40 times the motion's or more; 0: a quarter "
               "of what the structure's step allows");
   schema.real("coupling.rotation_damping_per_s", 0, not_negative(), "Damping of the rotations of beam nodes");
-  schema.real(
-      "coupling.volume_rate_per_s", 0, not_negative(),
-      "At which changes of the volume of solids' elements, which interpolation leaves, are taken back; "
-      "some hundred times the frequency of the motion; 0: not");
+  schema.boolean("coupling.keep_volume", true,
+                 "Do solids keep the volume of each of their elements (tetrahedra: of those around each node)? "
+                 "Interpolation alone lets it drift");
   schema.real("coupling.step_safety", 0.85, {0.05, 0.95}, "Time step over the computed stability limit");
   schema.real(
       "coupling.lead", 0, {0, 0.5},

@@ -107,6 +107,7 @@ Vec3 by_hand(int steps) {
   settings.cells = coupling::cells_of(mesh);
   settings.sampling_mm = 0.5;
   settings.tie_rate_per_s = 300;
+  settings.keep_volume = true;
   coupling::add_excess_mass(*system, body, density, fluid_density, settings.excess_mass_g);
   coupling::ImmersedFlowSettings coupled;
   coupled.limits.largest_s = 1;
