@@ -10,6 +10,7 @@
 #include "bodies/level_set.hpp"
 #include "bodies/shell.hpp"
 #include "core/errors.hpp"
+#include "materials/holzapfel.hpp"
 #include "materials/lee_sacks.hpp"
 
 namespace valsalva::cycle {
@@ -105,10 +106,18 @@ materials::HgoParameters hgo_of(const materials::MaterialSet& material, const st
   };
   if (material.law == "hgo") return {at("c10_Pa"), at("c01"), at("k1_Pa"), at("k2"), at("kappa")};
   if (material.law == "lee-sacks")
+    return materials::as_hgo(materials::LeeSacksParameters{at("c0_Pa"), at("c1_Pa"), at("c2"), 1,
+                                                           material.parameters.contains("w") ? at("w") : 1});
+  if (material.law == "neo-hookean")
+    return materials::as_hgo(materials::HolzapfelParameters{at("mu_Pa"), {0, 0}, {1, 1}});
+  if (material.law == "holzapfel")
     return materials::as_hgo(
-        {at("c0_Pa"), at("c1_Pa"), at("c2"), 1, material.parameters.contains("w") ? at("w") : 1});
-  throw InputError("{}: the law is '{}'; expected hgo, or lee-sacks with w = 1, for leaflets in a flow", what,
-                   material.law);
+        materials::HolzapfelParameters{at("mu_Pa"), {at("a1_Pa"), at("a2_Pa")}, {at("b1"), at("b2")}});
+  throw InputError(
+      "{}: the law is '{}'; expected hgo, neo-hookean, holzapfel with equal families or lee-sacks with w = "
+      "1, "
+      "for leaflets in a flow",
+      what, material.law);
 }
 
 /// Number of the connected piece of each triangle, in the order of the first nodes.

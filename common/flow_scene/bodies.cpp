@@ -212,8 +212,12 @@ void Bodies::immerse(const Case& scene, fluid::Flow& flow, const Frame& frame, d
   tie_rate_ = scene.real("coupling.tie_rate_per_s");
   settings.tie_rate_per_s = tie_rate_ > 0 ? tie_rate_ : 1e-9;  // hardly any, for auto_tie_rate
   settings.rotation_damping_per_s = scene.real("coupling.rotation_damping_per_s");
-  settings.lead = scene.real("coupling.lead");
-  settings.keep_volume = scene.boolean("coupling.keep_volume");
+  settings.keep_volume = scene.boolean("coupling.keep_volume") &&
+                         std::any_of(scene_.bodies.begin(), scene_.bodies.end(),
+                                     [](const BuiltBody& body) { return body.kind == Kind::solid; });
+  // Without their volumetric stiffness solids take steps that need the damping of the lead.
+  settings.lead = settings.keep_volume && !scene.is_set("coupling.lead") ? coupling::step_lead
+                                                                         : scene.real("coupling.lead");
   if (!scene_.body_contacts.empty())
     settings.guard = [this](structure::System& moving, double dt) {
       Points to = moving.state.x;

@@ -7,6 +7,13 @@
 
 namespace valsalva::materials {
 
+HgoParameters as_hgo(const HolzapfelParameters& p) {
+  require(p.a_Pa[0] == p.a_Pa[1] && p.b[0] == p.b[1], "holzapfel", "a2, b2", p.a_Pa[1],
+          "those of family 1, as an HGO law has");
+  constexpr double almost_linear = 1e-3;
+  return {p.mu_Pa / (2 * almost_linear), almost_linear, p.a_Pa[0], p.b[0], 0};
+}
+
 Holzapfel::Holzapfel(const HolzapfelParameters& parameters) : p_(parameters) {
   require_positive("holzapfel", "mu (Pa)", p_.mu_Pa);
   for (double a : p_.a_Pa) require_not_negative("holzapfel", "a (Pa)", a);

@@ -6,6 +6,7 @@
 // 2000; Holzapfel 2000). The plane-stress tangent is positive semi-definite.
 #pragma once
 
+#include "materials/hgo.hpp"
 #include "materials/invariant_law.hpp"
 
 namespace valsalva::materials {
@@ -15,6 +16,10 @@ struct HolzapfelParameters {
   std::array<double, 2> a_Pa{};
   std::array<double, 2> b{};
 };
+
+/// The same as an HGO law (a = 0: neo-Hookean), its matrix up to 5e-4 (I1 - 3) of itself. InputError where
+/// the families have different constants.
+HgoParameters as_hgo(const HolzapfelParameters& parameters);
 
 class Holzapfel : public InvariantLaw {
  public:

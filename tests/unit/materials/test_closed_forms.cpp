@@ -103,6 +103,18 @@ TEST(ClosedForms, LeeSacksWithoutFibresIsALawOfEvenlyDispersedFibres) {
   EXPECT_THROW(as_hgo({6e4, 1e4, 3, 1, 0.9}), InputError);
 }
 
+TEST(ClosedForms, HolzapfelWithEqualFamiliesIsAnHgoLaw) {
+  const HolzapfelParameters p{2e4, {5e4, 5e4}, {3, 3}};
+  const Holzapfel law(p);
+  const Hgo same(as_hgo(p));
+  for (const double l : stretches)
+    EXPECT_NEAR(uniaxial(same, l, fibres_at({0, 90})).cauchy_Pa(0, 0),
+                uniaxial(law, l, fibres_at({0, 90})).cauchy_Pa(0, 0),
+                2e-3 * std::abs(uniaxial(law, l, fibres_at({0, 90})).cauchy_Pa(0, 0)))
+        << l;
+  EXPECT_THROW(as_hgo({2e4, {5e4, 4e4}, {3, 3}}), InputError);
+}
+
 TEST(ClosedForms, Ogden) {
   const std::vector<std::pair<double, double>> terms{{6.3e5, 1.3}, {1.2e3, 5}, {-1e4, -2}};
   const auto law = make_law("ogden", {{"mu1_Pa", 6.3e5},
