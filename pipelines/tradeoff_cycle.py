@@ -1,7 +1,8 @@
 """make tradeoff, beating valve: figures of the beat against time over grid, leaflet mesh, kernel, coupling, step, convection.
 
     python3 pipelines/tradeoff_cycle.py [--scenes NAME ...] [--knobs WORD ...] [--values TEXT ...] [--ranks 2] [--again]
-                                        [--out docs/results] [--runs runs] [--list] [--tables] [--take FOLDER]
+                                        [--out docs/results] [--runs runs] [--list] [--tables]
+                                        [--take FOLDER [--processor-s S]]
 
 Every row is one beat of a scene with one knob moved from the base (draft: h = 1 mm, leaflet edges 0.5 mm, ib4, safety 0.85,
 upwind3). The stages before the beat run once for each leaflet mesh. OUT/cycle-tradeoff.csv is rewritten after every row and
@@ -111,15 +112,15 @@ def row_of(scene, knob, value, changes, digest, summary, status, wall_s, process
             "load_at_start": source["load_at_start"], "date": source["date"]}
 
 
-def taken(scene, knob, value, changes, folder, digest, source):
-    """The row of a beat that was run with the same parameters by other means on this machine, of its stage's folder; the ranks'
-    processors count as busy all the time."""
+def taken(scene, knob, value, changes, folder, digest, source, processor_s):
+    """The row of a beat that was run with the same parameters by other means on this machine, of its stage's folder; without
+    processor_s the ranks' processors count as busy all the time."""
     path = Path(folder) / "summary.json"
     summary = json.loads(path.read_text())
     if not summary["parameters_sha256"].startswith(digest.split("-")[0]) or summary["status"] != "ok":
         sys.exit(f"error: {path} is not a finished beat with the parameters of {scene}, {knob} {value}")
     when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(path.stat().st_mtime))
-    return row_of(scene, knob, value, changes, digest, summary, "ok", summary["wall_s"], summary["wall_s"] * summary["ranks"],
+    return row_of(scene, knob, value, changes, digest, summary, "ok", summary["wall_s"], processor_s or summary["wall_s"] * summary["ranks"],
                   source | {"load_at_start": "", "date": when})
 
 
@@ -174,7 +175,8 @@ def compare(rows):
             for row in mine:
                 # Without an order the finest value is off by what the next one differs from it, as far as is known.
                 value = f[1] if order is None and row is finest[0] else number(row, figure)
-                row[f"{figure}_error_pct"] = round(100 * abs(value / limit - 1), 3)
+                # Of a figure that is nothing (a stiff valve does not leak) there is no relative error but zero.
+                row[f"{figure}_error_pct"] = round(100 * abs(value / limit - 1), 3) if limit else 0 if value == limit else ""
             orders.append({"scene": scene, "figure": figure, **{key: value for i in range(3) for key, value in (
                 (f"h{i + 1}_mm", h[i] if i < len(h) else ""), (f"value{i + 1}", f[i] if i < len(f) else ""))},
                            "observed_order": "" if order is None else order, "extrapolated": "" if order is None else round(limit, 5),
@@ -217,6 +219,7 @@ def main():
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--tables", action="store_true")
     parser.add_argument("--take", type=Path, help="folder of the beat that is the one row asked for")
+    parser.add_argument("--processor-s", type=float, help="--take: processor time of that beat, where it was measured")
     options = parser.parse_args()
     if unknown := [knob for knob in options.knobs if knob not in KNOBS]:
         parser.error(f"--knobs: '{unknown[0]}' is none of {', '.join(KNOBS)}")
@@ -237,7 +240,7 @@ def main():
             continue
         if options.take and len(asked) != 1:
             parser.error("--take: name one scene, knob and value")
-        row = (taken(scene, knob, value, changes, options.take, digest, source) if options.take
+        row = (taken(scene, knob, value, changes, options.take, digest, source, options.processor_s) if options.take
                else beat(scene, knob, value, changes, options, digest))
         rows = [other for other in rows if other not in same] + [row]
         write(rows, options, source)

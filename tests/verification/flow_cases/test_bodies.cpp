@@ -425,6 +425,86 @@ TEST(FlowBodies, AFlapOnAWallBendsDownstream) {
   EXPECT_LT(run.metric("foot_N"), 0);
 }
 
+// A bar two cells thick, clamped to a wall in still fluid, under its own weight: it has to rest where a beam
+// does, with every element's volume as at the start (docs/verification/flow-bodies.md: without, it loses its
+// stiffness). Plane strain of an incompressible solid: E* = 4 mu; w = q L^4/(8 E* I) + q L^2/(2 (5/6) mu t).
+TEST(FlowBodies, ABarRestsWhereABeamDoes) {
+  constexpr double length = 12, thickness = 2, mu = 1e3, density = 1e-3, gravity = 30;
+  FlowRun run(R"([fluid]
+box_mm = [0, 0, 0, 18, 12, 3]
+grid_mm = 1
+density_g_per_mm3 = 1e-3
+viscosity_Pa_s = 0.024
+end_s = 1.2
+history_rows = 12
+[[boundary]]
+name = "walls"
+sides = ["x_low", "y"]
+kind = "wall"
+[[boundary]]
+name = "plane flow"
+sides = ["z"]
+kind = "periodic"
+[[boundary]]
+name = "open"
+sides = ["x_high"]
+kind = "outflow"
+[[body]]
+name = "bar"
+kind = "solid"
+shape = "box"
+origin_mm = [0, 5, 0]
+size_mm = [12, 2, 3]
+divisions = [6, 1, 1]
+element = "hex27"
+law = "linear"
+young_kPa = 2.8
+poisson = 0.4
+formulation = "displacement"
+density_g_per_mm3 = 1e-3
+[[nodes]]
+name = "foot"
+body = "bar"
+select = "group"
+group = "start1"
+[[support]]
+name = "foot"
+nodes = "foot"
+hold = ["all"]
+[[nodes]]
+name = "all"
+body = "bar"
+select = "all"
+[[support]]
+name = "plane strain"
+nodes = "all"
+hold = ["z"]
+[[load]]
+name = "weight"
+kind = "gravity"
+body = "bar"
+acceleration_mm_per_s2 = [0, -30, 0]
+[[nodes]]
+name = "tip"
+body = "bar"
+select = "nearest"
+point_mm = [12, 6, 0]
+[[probe]]
+name = "tip_y"
+of = "tip"
+component = "y"
+)",
+              {});
+  run.to_end();
+  const double q = density * gravity * thickness,
+               bending = q * std::pow(length, 4) / (8 * 4 * mu * std::pow(thickness, 3) / 12),
+               shear = q * length * length / (2 * 5.0 / 6 * mu * thickness);
+  std::printf("tip %.5f mm, beam %.5f mm, largest change of a volume %.2g\n", run.metric("tip_y_mm"),
+              -(bending + shear), run.metric("coupling_largest_volume_change"));
+  EXPECT_NEAR(run.metric("tip_y_mm") / -(bending + shear), 1, 0.1);
+  EXPECT_LT(run.metric("coupling_largest_volume_change"), 1e-8);
+}
+
 TEST(FlowBodies, WhatIsWrongIsNamed) {
   const auto message = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
     try {
