@@ -114,9 +114,7 @@ materials::HgoParameters hgo_of(const materials::MaterialSet& material, const st
     return materials::as_hgo(
         materials::HolzapfelParameters{at("mu_Pa"), {at("a1_Pa"), at("a2_Pa")}, {at("b1"), at("b2")}});
   throw InputError(
-      "{}: the law is '{}'; expected hgo, neo-hookean, holzapfel with equal families or lee-sacks with w = "
-      "1, "
-      "for leaflets in a flow",
+      "{}: the law is '{}'; expected hgo, neo-hookean, holzapfel with equal families or lee-sacks (w = 1)",
       what, material.law);
 }
 

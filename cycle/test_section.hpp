@@ -8,9 +8,8 @@
 // R linear between the given heights; the second term, three sinuses, between z1 and z2 only. Its level set
 // is (r - r(theta, z)) / sqrt(1 + (dr/dz)^2): a distance to first order, exact in sign.
 //
-// Limits: leaflets bend as hinges do; their law is hgo, neo-hookean, holzapfel with
-// equal families or lee-sacks with w = 1; no thickness of the rigid
-// bodies but cycle.shell_mask_cells.
+// Limits: leaflets bend as hinges do; their law is hgo, neo-hookean, holzapfel with equal families or
+// lee-sacks with w = 1; no thickness of the rigid bodies but cycle.shell_mask_cells.
 #pragma once
 
 #include "inputs.hpp"

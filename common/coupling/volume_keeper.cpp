@@ -20,7 +20,8 @@ Eigen::Map<Eigen::VectorXd> flat(Points& points, Eigen::Index size) {
 
 }  // namespace
 
-VolumeKeeper::VolumeKeeper(std::span<const Cell> cells, const Points& start, const std::vector<Mat3>& held)
+VolumeKeeper::VolumeKeeper(std::span<const Cell> cells, const Points& start, const std::vector<Mat3>& held,
+                           int most_direct)
     : held_(held) {
   for (const auto& point : structure::quadrature(structure::Shape::hex8, structure::Rule::stiffness)) {
     slope_.emplace_back(structure::evaluate(structure::Shape::hex8, point.at).gradient);
@@ -46,6 +47,8 @@ VolumeKeeper::VolumeKeeper(std::span<const Cell> cells, const Points& start, con
   gradient_.resize(parts, 3 * static_cast<Eigen::Index>(start.size()));
   free_gradient_.resize(gradient_.rows(), gradient_.cols());
   start_ = now_ = volumes(start);
+  direct_ = parts <= most_direct;
+  iterations_.setTolerance(1e-10);
 }
 
 double VolumeKeeper::volume(const Cell& cell, const Points& x, std::array<Vec3, 8>* gradient) const {
@@ -106,29 +109,42 @@ void VolumeKeeper::update(const Points& x) {
   }
   gradient_.setFromTriplets(all.begin(), all.end());
   free_gradient_.setFromTriplets(free.begin(), free.end());
-  Eigen::SparseMatrix<double> product = free_gradient_ * Sparse(free_gradient_.transpose());
-  const double add = regular * product.diagonal().mean();
-  product.diagonal().array() += add;
-  if (!analysed_) inverse_.analyzePattern(product);
-  analysed_ = true;
-  inverse_.factorize(product);
-  if (inverse_.info() != Eigen::Success || !inverse_.vectorD().allFinite())
+  product_ = free_gradient_ * Sparse(free_gradient_.transpose());
+  const double add = regular * product_.diagonal().mean();
+  product_.diagonal().array() += add;
+  if (!direct_) {
+    iterations_.compute(product_);
+    return;
+  }
+  if (product_.nonZeros() != analysed_) factors_.analyzePattern(product_);
+  analysed_ = product_.nonZeros();
+  factors_.factorize(product_);
+  if (factors_.info() != Eigen::Success || !factors_.vectorD().allFinite())
     throw NumericalFailure(
         "coupling: the volumes of solids' elements cannot be kept, some have collapsed (the largest change "
         "of a volume is by {:.3g} times)",
         largest_change(x));
 }
 
+Eigen::VectorXd VolumeKeeper::pressures(const Eigen::VectorXd& growth) const {
+  if (direct_) return factors_.solve(growth);
+  Eigen::VectorXd found = iterations_.solve(growth);
+  if (iterations_.info() != Eigen::Success || !found.allFinite())
+    throw NumericalFailure(
+        "coupling: the pressures that keep the volumes of solids' elements were not found in {} iterations "
+        "(error {:.2g})",
+        iterations_.iterations(), iterations_.error());
+  return found;
+}
+
 void VolumeKeeper::constrain_force(Points& force) const {
   auto f = flat(force, gradient_.cols());
-  const Eigen::VectorXd pressure = inverse_.solve(free_gradient_ * f);
-  f -= gradient_.transpose() * pressure;
+  f -= gradient_.transpose() * pressures(free_gradient_ * f);
 }
 
 void VolumeKeeper::constrain_velocity(Points& velocity, const Eigen::VectorXd& growth) const {
   auto u = flat(velocity, gradient_.cols());
-  const Eigen::VectorXd pressure = inverse_.solve(gradient_ * u - growth);
-  u -= free_gradient_.transpose() * pressure;
+  u -= free_gradient_.transpose() * pressures(gradient_ * u - growth);
 }
 
 void VolumeKeeper::constrain_velocity(Points& velocity) const {

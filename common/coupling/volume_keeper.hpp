@@ -18,10 +18,10 @@
 // tetrahedra, which would lock, those around each node together.
 #pragma once
 
+#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <array>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -32,11 +32,12 @@ namespace valsalva::coupling {
 class VolumeKeeper {
  public:
   /// Of the cells those with volume count; start: where they have theirs. held: projectors on held
-  /// directions, one a node, or empty.
-  VolumeKeeper(std::span<const Cell> cells, const Points& start, const std::vector<Mat3>& held);
+  /// directions, one a node, or empty. Up to most_direct parts G P G^T is factorised in every step, beyond
+  /// that solved with conjugate gradients to 1e-10.
+  VolumeKeeper(std::span<const Cell> cells, const Points& start, const std::vector<Mat3>& held,
+               int most_direct = 1500);
 
   bool empty() const { return cells_.empty(); }
-  std::size_t parts() const { return start_.size(); }
   /// The shape that the following calls are about. NumericalFailure when parts have collapsed.
   void update(const Points& x);
   /// F := M^T F + what the constraint pulls at held directions. The first entries are the nodes'.
@@ -52,6 +53,7 @@ class VolumeKeeper {
 
   double volume(const Cell& cell, const Points& x, std::array<Vec3, 8>* gradient) const;
   Eigen::VectorXd volumes(const Points& x) const;
+  Eigen::VectorXd pressures(const Eigen::VectorXd& growth) const;
   void constrain_velocity(Points& velocity, const Eigen::VectorXd& growth) const;
 
   std::vector<Cell> cells_;
@@ -59,8 +61,11 @@ class VolumeKeeper {
   Eigen::VectorXd start_, now_;             // volumes
   std::vector<Mat3> held_;
   Sparse gradient_, free_gradient_;  // G, G P
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> inverse_;
-  bool analysed_ = false;
+  bool direct_;
+  Eigen::SparseMatrix<double> product_;  // G P G^T
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> iterations_;
+  Eigen::Index analysed_ = -1;                      // entries of the product whose pattern the factors know
   std::vector<Eigen::Matrix<double, 3, 8>> slope_;  // of the hexahedron's functions at the Gauss points
   std::vector<double> weight_;
 };

@@ -155,6 +155,23 @@ TEST_P(VolumesOfCells, WhatKeepsThemIsLeftAlone) {
   for (std::size_t a = 0; a < x.size(); ++a) EXPECT_LT((u[a] - spin[a]).norm(), 1e-10);
 }
 
+TEST_P(VolumesOfCells, IterationsFindWhatFactorsDo) {
+  const Block block(GetParam());
+  const std::vector<Mat3> held = hold_sides(block.x);
+  VolumeKeeper direct(block.cells, block.x, held), iterated(block.cells, block.x, held, 0);
+  direct.update(block.x);
+  iterated.update(block.x);
+  Points u = random_points(block.x.size(), 1, 6), v = u, f = u, g = u;
+  direct.constrain_velocity(u, 0.1);
+  iterated.constrain_velocity(v, 0.1);
+  direct.constrain_force(f);
+  iterated.constrain_force(g);
+  for (std::size_t a = 0; a < u.size(); ++a) {
+    EXPECT_LT((u[a] - v[a]).norm(), 1e-7) << a;
+    EXPECT_LT((f[a] - g[a]).norm(), 1e-7) << a;
+  }
+}
+
 TEST_P(VolumesOfCells, BodiesStillBendAndTwist) {
   // No locking: what is left of the motions of one side against the other, each by itself free of divergence.
   const Block block(GetParam());
