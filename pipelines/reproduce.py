@@ -183,8 +183,10 @@ def main():
         mesh = read(path)
         weight = areas(mesh)
         masks = regions(len(weight), divisions, options.half, options.rows)
-        for field, label in (("von_mises_kPa", "von Mises stress, kPa"), ("stretch", "largest stretch")):
-            values = vtk_to_numpy(mesh.GetCellData().GetArray(field))
+        for fields, label in (({"von_mises_kPa": 1, "von_mises_Pa": 1e-3}, "von Mises stress, kPa"),
+                              ({"stretch": 1, "stretch_major": 1}, "largest stretch")):
+            field = next(name for name in fields if mesh.GetCellData().HasArray(name))  # of a scene, or of a beat
+            values = fields[field] * vtk_to_numpy(mesh.GetCellData().GetArray(field))
             means = [np.average(values[m], weights=weight[m]) for m in masks.values()]
             cells = [f"{x:.4g}" for x in means + [percentile(values, weight, 0.99), values.max()]]
             print(f"| {name} | {label} | " + " | ".join(cells) + " |")
