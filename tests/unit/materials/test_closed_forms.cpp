@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
+#include "materials/holzapfel.hpp"
 #include "materials/lee_sacks.hpp"
 #include "materials/sheet_test.hpp"
 #include "samples.hpp"
