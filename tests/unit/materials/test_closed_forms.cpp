@@ -101,7 +101,7 @@ TEST(ClosedForms, LeeSacksWithoutFibresIsALawOfEvenlyDispersedFibres) {
                 1e-3 * std::abs(uniaxial(law, l).cauchy_Pa(0, 0)))
         << l;
   EXPECT_NEAR(same.matrix_modulus_Pa(), 3 * p.c0_Pa, 1e-9 * p.c0_Pa);
-  EXPECT_THROW(as_hgo({6e4, 1e4, 3, 1, 0.9}), InputError);
+  EXPECT_THROW(as_hgo(LeeSacksParameters{6e4, 1e4, 3, 1, 0.9}), InputError);
 }
 
 TEST(ClosedForms, HolzapfelWithEqualFamiliesIsAnHgoLaw) {
@@ -113,7 +113,7 @@ TEST(ClosedForms, HolzapfelWithEqualFamiliesIsAnHgoLaw) {
                 uniaxial(law, l, fibres_at({0, 90})).cauchy_Pa(0, 0),
                 2e-3 * std::abs(uniaxial(law, l, fibres_at({0, 90})).cauchy_Pa(0, 0)))
         << l;
-  EXPECT_THROW(as_hgo({2e4, {5e4, 4e4}, {3, 3}}), InputError);
+  EXPECT_THROW(as_hgo(HolzapfelParameters{2e4, {5e4, 4e4}, {3, 3}}), InputError);
 }
 
 TEST(ClosedForms, Ogden) {
