@@ -18,14 +18,15 @@ void declare_coupling(Schema& schema) {
               "Angular frequency of the ties to excess masses, 40 times the motion's or more; 0: a quarter "
               "of what the structure's step allows");
   schema.real("coupling.rotation_damping_per_s", 0, not_negative(), "Damping of the rotations of beam nodes");
-  schema.boolean("coupling.keep_volume", true,
-                 "Do solids keep the volume of each of their elements (tetrahedra: of those around each node)? "
-                 "Interpolation alone lets it drift");
+  schema.boolean(
+      "coupling.keep_volume", true,
+      "Do solids keep the volume of each of their elements (tetrahedra: of those around each node)? "
+      "Interpolation alone lets it drift");
   schema.real("coupling.step_safety", 0.85, {0.05, 0.95}, "Time step over the computed stability limit");
-  schema.real(
-      "coupling.lead", 0, {0, 0.5},
-      "Share of the step by which elastic forces run ahead: 0.25 allows steps up to twice as long, and is what "
-      "solids take that keep their volume, unless this is set");
+  schema.real("coupling.lead", 0, {0, 0.5},
+              "Share of the step by which elastic forces run ahead: 0.25 allows steps up to twice as long, "
+              "and is what "
+              "solids take that keep their volume, unless this is set");
   schema.integer("coupling.probe_interval", 8, {1, 1000}, "Steps between estimates of the stability limit");
   schema.integer("coupling.probe_iterations", 2, {1, 100}, "Power iterations in each estimate");
   schema.real("coupling.largest_stretch", 4, {1, 1000},
