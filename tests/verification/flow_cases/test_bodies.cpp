@@ -108,6 +108,7 @@ Vec3 by_hand(int steps) {
   settings.sampling_mm = 0.5;
   settings.tie_rate_per_s = 300;
   settings.keep_volume = true;
+  settings.lead = coupling::step_lead;
   coupling::add_excess_mass(*system, body, density, fluid_density, settings.excess_mass_g);
   coupling::ImmersedFlowSettings coupled;
   coupled.limits.largest_s = 1;
