@@ -117,6 +117,18 @@ std::vector<Cell> cells_of(const structure::SolidMesh& mesh, int offset) {
   return cells;
 }
 
+std::vector<double> nodal_measures(std::span<const Cell> cells, const Points& x) {
+  std::vector<double> measures(x.size(), 0.0);
+  for (const Cell& cell : cells) {
+    const double each = measure_of(cell, x) / cell.count;
+    if (!(each > 0))
+      throw InputError("coupling: the element of the nodes {}, {} ... is flat or reversed in the reference",
+                       cell.nodes[0], cell.nodes[1]);
+    for (int i = 0; i < cell.count; ++i) measures[cell.nodes[i]] += each;
+  }
+  return measures;
+}
+
 std::vector<Edge> edges_of(std::span<const Cell> cells) {
   std::set<Edge> edges;
   for (const Cell& cell : cells)
@@ -129,16 +141,10 @@ std::vector<Edge> edges_of(std::span<const Cell> cells) {
 
 Sampling::Sampling(std::vector<Cell> cells, const Points& reference, double spacing_mm,
                    const std::vector<std::uint8_t>& left_out)
-    : cells_(std::move(cells)), mass_(reference.size(), 0.0), spacing_(spacing_mm) {
+    : cells_(std::move(cells)), mass_(nodal_measures(cells_, reference)), spacing_(spacing_mm) {
   if (!(spacing_mm > 0))
     throw InputError("coupling: points at a spacing of {} mm; expected a positive one", spacing_mm);
-  for (const Cell& cell : cells_) {
-    measure_.push_back(measure_of(cell, reference));
-    if (!(measure_.back() > 0))
-      throw InputError("coupling: the element of the nodes {}, {} ... is flat or reversed in the reference",
-                       cell.nodes[0], cell.nodes[1]);
-    for (int i = 0; i < cell.count; ++i) mass_[cell.nodes[i]] += measure_.back() / cell.count;
-  }
+  for (const Cell& cell : cells_) measure_.push_back(measure_of(cell, reference));
   for (std::size_t a = 0; a < mass_.size(); ++a)
     if (mass_[a] == 0 && (left_out.empty() || !left_out[a])) alone_.push_back(static_cast<int>(a));
   locate(reference);

@@ -38,6 +38,8 @@ std::vector<Cell> cells_of(std::span<const Edge> lines, int offset = 0);
 std::vector<Cell> cells_of(std::span<const Triangle> triangles, int offset = 0);
 /// tet10: 8 tetrahedra; hex27: 8 hexahedra.
 std::vector<Cell> cells_of(const structure::SolidMesh& mesh, int offset = 0);
+/// The measure that belongs to each node: m_a, the integral of its function.
+std::vector<double> nodal_measures(std::span<const Cell> cells, const Points& x);
 /// Node pairs of all edges, each once.
 std::vector<Edge> edges_of(std::span<const Cell> cells);
 

@@ -54,6 +54,10 @@ void Transfer::locate(const Points& x) {
     Stencil& stencil = stencils_.emplace_back();
     stencil.node = a;
     const auto take = [&](int d) {
+      if (lone(d)) {  // all samples are the same one
+        stencil.face[d] = stencil.centre[d] = {.start = 0, .value = {1, 0, 0, 0}};
+        return true;
+      }
       stencil.face[d] = weights(kernel_.along, cell[d]);
       stencil.centre[d] = weights(kernel_.across, cell[d] - 0.5);
       return !wraps(d, stencil.face[d]) && !wraps(d, stencil.centre[d]);
@@ -90,8 +94,7 @@ template <class Value, class Row>
 void Transfer::each_row(const Stencil& stencil, int component, Value* field, Row&& row) const {
   const Weights& y = stencil.along(1, component);
   const Weights& z = stencil.along(2, component);
-  const int used_y = support(component == 1 ? kernel_.along : kernel_.across);
-  const int used_z = support(component == 2 ? kernel_.along : kernel_.across);
+  const int used_y = used(1, component), used_z = used(2, component);
   const int planes = component == 2 ? slab_.w_planes() : slab_.planes, below = slab_.first - z.start;
   const int from = std::max(0, below), to = std::min(used_z, below + planes);
   Value* plane =
@@ -107,8 +110,7 @@ void Transfer::each_image(const Stencil& stencil, int component, Row&& row) cons
   const Weights& y = stencil.along(1, component);
   const Weights& z = stencil.along(2, component);
   const int planes = component == 2 ? slab_.w_planes() : slab_.planes;
-  const int used_y = support(component == 1 ? kernel_.along : kernel_.across);
-  const int used_z = support(component == 2 ? kernel_.along : kernel_.across);
+  const int used_y = used(1, component), used_z = used(2, component);
   for (int c = 0; c < used_z; ++c) {
     const Image plane = image(z.start + c, 2, component == 2);
     const int k = plane.index - slab_.first;

@@ -61,6 +61,12 @@ class Transfer {
   /// Calls row(face index j, local k, weight across) for every owned row of any stencil.
   template <class Row>
   void each_image(const Stencil& stencil, int component, Row&& row) const;
+  /// Has the box a single cell along d, with periodic sides (a plane flow)?
+  bool lone(int d) const { return periodic_[d] && slab_.grid.cells[d] == 1; }
+  /// Samples along d that a component reads.
+  int used(int d, int component) const {
+    return lone(d) ? 1 : support(d == component ? kernel_.along : kernel_.across);
+  }
   /// Does the stencil reach beyond the box along d, or to its sides?
   bool wraps(int d, const Weights& w) const;
   struct Image {

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/errors.hpp"
 
@@ -47,6 +48,10 @@ VolumeKeeper::VolumeKeeper(std::span<const Cell> cells, const Points& start, con
   gradient_.resize(parts, 3 * static_cast<Eigen::Index>(start.size()));
   free_gradient_.resize(gradient_.rows(), gradient_.cols());
   start_ = now_ = volumes(start);
+  measure_ = nodal_measures(cells_, start);
+  const double mean =
+      std::accumulate(measure_.begin(), measure_.end(), 0.0) / static_cast<double>(start.size());
+  for (double& m : measure_) m = m > 0 ? m / mean : 1;
   direct_ = parts <= most_direct;
   iterations_.setTolerance(1e-10);
 }
@@ -103,13 +108,13 @@ void VolumeKeeper::update(const Points& x) {
       for (int d = 0; d < 3; ++d)
         for (int part : parts_of_[c]) {
           all.emplace_back(part, 3 * a + d, gradient[i][d]);
-          free.emplace_back(part, 3 * a + d, of_free[d]);
+          free.emplace_back(part, 3 * a + d, of_free[d] / measure_[a]);
         }
     }
   }
   gradient_.setFromTriplets(all.begin(), all.end());
   free_gradient_.setFromTriplets(free.begin(), free.end());
-  product_ = free_gradient_ * Sparse(free_gradient_.transpose());
+  product_ = free_gradient_ * Sparse(gradient_.transpose());
   const double add = regular * product_.diagonal().mean();
   product_.diagonal().array() += add;
   if (!direct_) {

@@ -118,6 +118,7 @@ void add_and_clear(double* to, double* from, std::ptrdiff_t count) {
   std::fill_n(from, count, 0.0);
 }
 
+// Images of a plane that is nearer than the layer is deep come by way of other ghosts: from the outermost on.
 void accumulate_planes(const Slab& slab, Field& field) {
   const std::ptrdiff_t count = ghosts * slab.stride_z;
   double* base = field.data().data();
@@ -126,9 +127,10 @@ void accumulate_planes(const Slab& slab, Field& field) {
   double* lowest = base + ghosts * slab.stride_z;
   double* highest = base + slab.planes * slab.stride_z;
   if (slab.ranks == 1) {
-    if (slab.periodic_z) {
-      add_and_clear(highest, below, count);
-      add_and_clear(lowest, above, count);
+    for (int m = ghosts - 1; slab.periodic_z && m >= 0; --m) {
+      add_and_clear(highest + (ghosts - 1 - m) * slab.stride_z, below + (ghosts - 1 - m) * slab.stride_z,
+                    slab.stride_z);
+      add_and_clear(lowest + m * slab.stride_z, above + m * slab.stride_z, slab.stride_z);
     }
     return;
   }
@@ -172,9 +174,10 @@ void exchange_planes(const Slab& slab, Field& field, int layers) {
   double* above = base + (slab.planes + ghosts) * slab.stride_z;
   double* highest = above - count;
   if (slab.ranks == 1) {
-    if (slab.periodic_z) {
-      std::copy_n(highest, count, below);
-      std::copy_n(lowest, count, above);
+    for (int m = 0; slab.periodic_z && m < layers; ++m) {
+      const std::ptrdiff_t back = (layers - 1 - m) * slab.stride_z, on = m * slab.stride_z;
+      std::copy_n(highest + back, slab.stride_z, below + back);
+      std::copy_n(lowest + on, slab.stride_z, above + on);
     }
     return;
   }
@@ -194,7 +197,7 @@ void accumulate_ghosts(const Slab& slab, const Boundaries& boundaries, FaceField
     accumulate_planes(slab, field);
     for (int k = 0; k < slab.planes + 1; ++k) {
       if (boundaries.periodic(1)) {
-        for (int m = 0; m < ghosts; ++m) {
+        for (int m = ghosts - 1; m >= 0; --m) {
           add_and_clear(field.row(ny - 1 - m, k) - ghosts, field.row(-1 - m, k) - ghosts, slab.stride_y);
           add_and_clear(field.row(m, k) - ghosts, field.row(ny + m, k) - ghosts, slab.stride_y);
         }
@@ -202,7 +205,7 @@ void accumulate_ghosts(const Slab& slab, const Boundaries& boundaries, FaceField
       if (boundaries.periodic(0)) {
         for (int j = 0; j < ny; ++j) {
           double* row = field.row(j, k);
-          for (int m = 0; m < ghosts; ++m) {
+          for (int m = ghosts - 1; m >= 0; --m) {
             add_and_clear(row + nx - 1 - m, row - 1 - m, 1);
             add_and_clear(row + m, row + nx + m, 1);
           }
@@ -282,12 +285,15 @@ void fill_periodic_ghosts(const Slab& slab, Field& field, int layers) {
   for (int k = 0; k < slab.planes; ++k) {
     for (int j = 0; j < ny; ++j) {
       double* row = field.row(j, k);
-      std::copy_n(row + nx - layers, layers, row - layers);
-      std::copy_n(row, layers, row + nx);
+      for (int m = 0; m < layers; ++m) {
+        row[-1 - m] = row[nx - 1 - m];
+        row[nx + m] = row[m];
+      }
     }
-    const std::ptrdiff_t count = layers * slab.stride_y;
-    std::copy_n(field.row(ny - layers, k) - ghosts, count, field.row(-layers, k) - ghosts);
-    std::copy_n(field.row(0, k) - ghosts, count, field.row(ny, k) - ghosts);
+    for (int m = 0; m < layers; ++m) {
+      std::copy_n(field.row(ny - 1 - m, k) - ghosts, slab.stride_y, field.row(-1 - m, k) - ghosts);
+      std::copy_n(field.row(m, k) - ghosts, slab.stride_y, field.row(ny + m, k) - ghosts);
+    }
   }
   exchange_planes(slab, field, layers);
 }

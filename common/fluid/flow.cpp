@@ -12,8 +12,15 @@ namespace valsalva::fluid {
 
 namespace {
 
-const Boundaries& checked(const Boundaries& boundaries) {
+const Boundaries& checked(const Boundaries& boundaries, const Grid& grid, const FlowParameters& parameters) {
   boundaries.check();
+  for (int d = 0; d < 3; ++d) {
+    const int needed = boundaries.periodic(d) && !parameters.krylov ? 1 : ghosts;
+    if (grid.cells[d] < needed)
+      throw InputError(
+          "fluid grid: {} cells along {}; expected at least {}: refine the grid or enlarge the box",
+          grid.cells[d], "xyz"[d], needed);
+  }
   return boundaries;
 }
 
@@ -37,7 +44,7 @@ std::unique_ptr<PressureSolver> pressure_solver(const Slab& slab, const Boundari
 }  // namespace
 
 Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const FlowParameters& parameters)
-    : slab_(comm, grid, checked(boundaries).periodic(2)),
+    : slab_(comm, grid, checked(boundaries, grid, parameters).periodic(2)),
       boundaries_(boundaries),
       parameters_(parameters),
       solids_(slab_, parameters.density, parameters.wall),

@@ -1,5 +1,7 @@
 #include "fluid/grid.hpp"
 
+#include <algorithm>
+
 #include "core/errors.hpp"
 
 namespace valsalva::fluid {
@@ -11,17 +13,15 @@ Slab::Slab(MPI_Comm communicator, const Grid& whole, bool periodic)
       grid(whole),
       periodic_z(periodic) {
   for (int d = 0; d < 3; ++d) {
-    if (grid.cells[d] < ghosts) {
-      throw InputError(
-          "fluid grid: {} cells along {}; at least {} are needed: refine the grid or enlarge the box",
-          grid.cells[d], "xyz"[d], ghosts);
+    if (grid.cells[d] < 1) {
+      throw InputError("fluid grid: {} cells along {}; at least one is needed", grid.cells[d], "xyz"[d]);
     }
   }
   if (!(grid.h > 0)) throw InputError("fluid grid: cell size {} mm; it must be positive", grid.h);
-  if (grid.cells[2] / ranks < ghosts) {
+  if (ranks > 1 && grid.cells[2] / ranks < ghosts) {
     throw InputError(
         "fluid grid: {} planes of cells on {} ranks; each rank needs at least {}: use at most {} ranks",
-        grid.cells[2], ranks, ghosts, grid.cells[2] / ghosts);
+        grid.cells[2], ranks, ghosts, std::max(1, grid.cells[2] / ghosts));
   }
   first = first_of(rank);
   planes = first_of(rank + 1) - first;

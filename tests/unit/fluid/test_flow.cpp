@@ -269,8 +269,8 @@ TEST(Flow, PressureAndVelocityProbesInterpolateLinearly) {
 TEST(Grid, TooManyRanksOrOneSidedPeriodicityAreRefused) {
   Grid grid;
   grid.cells = {8, 8, 2};
-  EXPECT_THROW(Slab(MPI_COMM_SELF, grid, false), InputError);
   Boundaries boundaries;
+  EXPECT_THROW(Flow(MPI_COMM_SELF, grid, boundaries, {}), InputError);  // walls
   boundaries.side[0][0] = Side::periodic;
   EXPECT_THROW(boundaries.check(), InputError);
   boundaries.side[0] = {Side::open, Side::open};

@@ -81,7 +81,8 @@ TEST(FlowObstacles, CylinderOfTheLibraryDragsAsPublished) {
   const double h = 0.41 / 40;
   FlowRun run(FlowRun::library("fluid-cylinder-re20.toml"),
               {fmt::format("fluid.grid_mm={:.17g}", h), "fluid.end_s=5",
-               fmt::format("flow_probe.cylinder.reference_area_mm2={:.17g}", 0.1 * 4 * h)});
+               fmt::format("fluid.box_mm=[0,0,0,2.2,0.41,{:.17g}]", h),
+               fmt::format("flow_probe.cylinder.reference_area_mm2={:.17g}", 0.1 * h)});
   run.to_end();
   const double cd = run.metric("cylinder_x_coefficient"), cl = run.metric("cylinder_y_coefficient");
   std::printf("drag %.3f (published %.3f), lift %.4f (%.4f)\n", cd, *drag, cl, *lift);
