@@ -17,6 +17,7 @@ using coupling::Cell;
 
 constexpr double room_cells = 2, round_off = 1e-9;                       // coupling/transfer.hpp
 constexpr double longest_for_nodes = 0.75;                               // of a cell
+constexpr double shortest_for_solids = 0.8;                              // of a cell
 constexpr double tie_limit_over_elastic = 4, tie_limit_over_flow = 1.3;  // so that ties cost no step
 
 std::vector<Cell> cells_of(const BuiltBody& body) {
@@ -37,6 +38,20 @@ double longest_edge(const std::vector<Cell>& cells, const Points& x) {
   double longest = 0;
   for (const Edge& e : coupling::edges_of(cells)) longest = std::max(longest, (x[e[0]] - x[e[1]]).norm());
   return longest;
+}
+
+/// Of the edges that can move, those shorter than `length`: their share.
+double share_of_short_edges(const std::vector<Cell>& cells, const structure::System& system, double length) {
+  double all = 0, below = 0;
+  for (const auto& [a, b] : coupling::edges_of(cells)) {
+    const Vec3 edge = system.state.x[a] - system.state.x[b];
+    if ((edge - system.held_directions(a) * edge).norm() < 0.1 * edge.norm() &&
+        (edge - system.held_directions(b) * edge).norm() < 0.1 * edge.norm())
+      continue;  // across a plane flow
+    ++all;
+    below += edge.norm() < length ? 1 : 0;
+  }
+  return all > 0 ? below / all : 0;
 }
 
 bool is_zero(const VectorExpression& f) {
@@ -185,6 +200,14 @@ void Bodies::immerse(const Case& scene, fluid::Flow& flow, const Frame& frame, d
     for (int a = body.at.begin(); a < body.at.end(); ++a)
       left_out[a] = body.kind == Kind::rigid ||
                     (!quadrature && (system.held_directions(a) - Mat3::Identity()).norm() < 1e-12);
+    if (body.kind == Kind::solid && share_of_short_edges(cells, system, shortest_for_solids * h) > 0.25)
+      log::warn(
+          "solid {} has nodes nearer to each other than {} cells: the fluid cannot tell their motions apart, "
+          "and "
+          "what loads it may be wrong by half (docs/verification/flow-bodies.md); expected elements with "
+          "nodes a "
+          "cell or more apart, or a finer grid",
+          body.name, shortest_for_solids);
     if (!quadrature && longest > h)
       log::warn("body {} couples at its nodes, and its longest edge is {:.3g} cells: fluid will pass through",
                 body.name, longest / h);
