@@ -1,0 +1,195 @@
+// Flow's projection: the pressure that takes the velocity's divergence away, and what is left of it.
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "core/mpi.hpp"
+#include "fluid/flow.hpp"
+#include "fluid/fourth_order.hpp"
+
+namespace valsalva::fluid {
+
+std::array<const double*, 3> Flow::faces_of(int place, int k) const {
+  const int nx = slab_.grid.cells[0], i = place % nx, j = place / nx;
+  return {velocity_[0].row(j, k) + i, velocity_[1].row(j, k) + i, velocity_[2].row(j, k) + i};
+}
+
+void Flow::constrain(FaceField& velocity, Planes within) {
+  VALSALVA_ASSERT(parameters_.order == 2);
+  solids_.still(velocity, within);
+  if (krylov_) return;
+  // A cell beneath a plane of faces w has them for its upper ones.
+  const Planes of_cells{std::max(within.from, 1) - 1, within.to};
+  velocity_.swap(velocity);
+  exchange_planes(slab_, velocity_[2], 1);
+  poisson_->solve([&](int k, double* plane) { fill_source(k, 1, Given::nothing, plane); },
+                  [&](int k, const double* plane) { keep_correction(k, plane); }, of_cells);
+  fill_phi_ghosts(correction_, {0, 0});
+  const double factor = 1 / (parameters_.density * slab_.grid.h);
+  const std::array<std::ptrdiff_t, 3> stride{1, slab_.stride_y, slab_.stride_z};
+  for (int d = 0; d < 3; ++d) {
+    const int planes = std::min(within.to, d == 2 ? slab_.w_planes() : slab_.planes);
+    for (int k = std::max(within.from, 0); k < planes; ++k)
+      for (int j = 0; j < slab_.grid.cells[1]; ++j) {
+        double* u = velocity_[d].row(j, k);
+        const double* phi = correction_.row(j, k);
+#pragma omp simd
+        for (int i = 0; i < slab_.grid.cells[0]; ++i) u[i] -= factor * (phi[i] - phi[i - stride[d]]);
+      }
+  }
+  velocity_.swap(velocity);
+}
+
+void Flow::keep_correction(int k, const double* plane) {
+  const int nx = slab_.grid.cells[0];
+  for (int j = 0; j < slab_.grid.cells[1]; ++j)
+    std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, correction_.row(j, k));
+}
+
+void Flow::fill_source(int k, double per_dt, Given through, double* plane) {
+  const double given = through == Given::velocity ? 1 : 0;
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const double factor = parameters_.density * per_dt / slab_.grid.h;
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  const double* first_v = velocity_[1].row(0, k);
+  double* end_v = velocity_[1].row(ny, k);
+  if (boundaries_.periodic(1)) {
+    std::copy_n(first_v, nx, end_v);
+  } else {
+    for (int i = 0; i < nx; ++i) end_v[i] = given * boundaries_.inflow[1][1].at(1, i, k);
+  }
+  for (int j = 0; j < ny; ++j) {
+    double* u = velocity_[0].row(j, k);
+    u[nx] = boundaries_.periodic(0) ? u[0] : given * boundaries_.inflow[0][1].at(0, j, k);
+    const double* v = velocity_[1].row(j, k);
+    const double* w = velocity_[2].row(j, k);
+    double* b = plane + static_cast<std::size_t>(j) * nx;
+#pragma omp simd
+    for (int i = 0; i < nx; ++i)
+      b[i] = factor * ((u[i + 1] - u[i]) + (v[i + sy] - v[i]) + (w[i + sz] - w[i]));
+  }
+  for (const Solids::CutCell& cell : solids_.cut_cells(k))
+    plane[cell.place] = factor * cell.difference(faces_of(cell.place, k), {1, sy, sz});
+}
+
+StepReport Flow::project(double dt) {
+  if (krylov_) return project_cells(dt);
+  const bool fourth = parameters_.order == 4;
+  // The exchange does not reach the highest face of a closed box, which belongs to its own slab.
+  if (fourth) {
+    fill_ghosts();
+  } else {
+    exchange_planes(slab_, velocity_[2], 1);
+  }
+  poisson_->solve(
+      [&](int k, double* plane) {
+        fourth ? fill_source_fourth_order(k, 1 / dt, plane) : fill_source(k, 1 / dt, Given::velocity, plane);
+      },
+      [&](int k, const double* plane) { keep_correction(k, plane); });
+  const std::array<double, 2> ends = keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_;
+  fill_phi_ghosts(correction_, ends);
+  const StepReport report = fourth ? correct_fourth_order(dt) : correct(dt);
+  if (!std::isfinite(report.kinetic_energy)) report_not_finite();
+  fill_ghosts();
+  return report;
+}
+
+void Flow::fill_source_fourth_order(int k, double per_dt, double* plane) const {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const double factor = parameters_.density * per_dt / slab_.grid.h;
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  for (int j = 0; j < ny; ++j) {
+    const double* u = velocity_[0].row(j, k) + 1;
+    const double* v = velocity_[1].row(j, k) + sy;
+    const double* w = velocity_[2].row(j, k) + sz;
+    double* b = plane + static_cast<std::size_t>(j) * nx;
+#pragma omp simd
+    for (int i = 0; i < nx; ++i)
+      b[i] = factor * (fourth_order::difference(u + i, 1) + fourth_order::difference(v + i, sy) +
+                       fourth_order::difference(w + i, sz));
+  }
+}
+
+StepReport Flow::correct_fourth_order(double dt) {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  const double factor = dt / (parameters_.density * slab_.grid.h);
+  const double keep = keep_pressure_ ? 1 : 0;
+  double energy = 0, speed = 0;
+  for (int k = 0; k < slab_.planes; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      const double* phi = correction_.row(j, k);
+      double* u = velocity_[0].row(j, k);
+      double* v = velocity_[1].row(j, k);
+      double* w = velocity_[2].row(j, k);
+#pragma omp simd reduction(+ : energy) reduction(max : speed)
+      for (int i = 0; i < nx; ++i) {
+        u[i] -= factor * fourth_order::difference(phi + i, 1);
+        v[i] -= factor * fourth_order::difference(phi + i, sy);
+        w[i] -= factor * fourth_order::difference(phi + i, sz);
+        energy += u[i] * u[i] + v[i] * v[i] + w[i] * w[i];
+        const double sum = std::abs(u[i]) + std::abs(v[i]) + std::abs(w[i]);
+        speed = speed < sum ? sum : speed;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < correction_.data().size(); ++i)
+    correction_.data()[i] += keep * pressure_.data()[i];
+  pressure_.swap(correction_);
+  return report_of(dt, energy, speed);
+}
+
+// Downwards, so that the new pressure can take the place of phi where no face above needs it any more: the
+// old pressure stays for undo().
+StepReport Flow::correct(double dt) {
+  const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
+  const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
+  const double factor = dt / (parameters_.density * slab_.grid.h);
+  const double keep = keep_pressure_ ? 1 : 0;
+  double energy = 0, speed = 0;
+  for (int k = slab_.w_planes() - 1; k >= 0; --k) {
+    const bool inside = k < slab_.planes;
+    for (int j = ny - 1; j >= 0; --j) {
+      double* phi = correction_.row(j, k);
+      double* w = velocity_[2].row(j, k);
+      if (inside) {
+        double* u = velocity_[0].row(j, k);
+        double* v = velocity_[1].row(j, k);
+        const double* p = pressure_.row(j, k);
+#pragma omp simd reduction(+ : energy) reduction(max : speed)
+        for (int i = 0; i < nx; ++i) {
+          const double un = u[i] - factor * (phi[i] - phi[i - 1]);
+          const double vn = v[i] - factor * (phi[i] - phi[i - sy]);
+          const double wn = w[i] - factor * (phi[i] - phi[i - sz]);
+          u[i] = un;
+          v[i] = vn;
+          w[i] = wn;
+          energy += un * un + vn * vn + wn * wn;
+          const double sum = std::abs(un) + std::abs(vn) + std::abs(wn);
+          speed = speed < sum ? sum : speed;
+        }
+#pragma omp simd
+        for (int i = 0; i < nx; ++i) phi[i] += keep * p[i];
+      } else {
+        for (int i = 0; i < nx; ++i) {
+          w[i] -= factor * (phi[i] - phi[i - sz]);
+          energy += w[i] * w[i];
+          speed = std::max(speed, std::abs(w[i]));
+        }
+      }
+    }
+  }
+  pressure_.swap(correction_);
+  return report_of(dt, energy, speed);
+}
+
+StepReport Flow::report_of(double dt, double energy, double speed) const {
+  StepReport report;
+  report.kinetic_energy =
+      mpi::sum(slab_.comm, 0.5 * parameters_.density * std::pow(slab_.grid.h, 3) * energy);
+  report.max_speed = mpi::max(slab_.comm, speed);
+  report.cfl = dt * report.max_speed / slab_.grid.h;
+  return report;
+}
+
+}  // namespace valsalva::fluid
