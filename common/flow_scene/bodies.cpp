@@ -202,9 +202,8 @@ void Bodies::immerse(const Case& scene, fluid::Flow& flow, const Frame& frame, d
                     (!quadrature && (system.held_directions(a) - Mat3::Identity()).norm() < 1e-12);
     if (body.kind == Kind::solid && share_of_short_edges(cells, system, shortest_for_solids * h) > 0.25)
       log::warn(
-          "solid {} has nodes nearer to each other than {} cells: the fluid cannot tell their motions apart, "
-          "and its load may be wrong by half (docs/verification/flow-bodies.md); expected elements with nodes "
-          "a cell or more apart, or a finer grid",
+          "solid {} has nodes nearer than {} cells, whose motions the fluid cannot tell apart: its load may "
+          "be wrong by half (docs/verification/flow-bodies.md); expected larger elements or a finer grid",
           body.name, shortest_for_solids);
     if (!quadrature && longest > h)
       log::warn("body {} couples at its nodes, and its longest edge is {:.3g} cells: fluid will pass through",
