@@ -39,6 +39,18 @@ def run(case, folder, values, ranks=1, again=False):
     return result
 
 
+def made(note):
+    """The last columns of every study's row: how the run of a study.json was made."""
+    return {"steps": note["steps"], "ranks": note["ranks"], "wall_s": note["wall_s"],
+            **{key: note["source"][key] for key in ("commit", "machine", "load_at_start")}}
+
+
+def finished(runs, key):
+    """Folder and study.json of all finished runs of a study, in the order of key(study)."""
+    notes = [(path.parent, json.loads(path.read_text())) for path in runs.glob("*/study.json")]
+    return sorted(notes, key=lambda one: key(one[1]["study"]))
+
+
 def columns(path):
     """A table of numbers with a line of names: name -> array; empty cells are NaN."""
     with open(path, newline="") as file:

@@ -37,9 +37,7 @@ def described(folder, note):
     closed = t >= WINDOWS[0][0]
     row |= {"fastest_mm_per_s": round(10 * float(history["max_speed_cm_per_s"][closed].max())),
             "strain_p99": round(float(history["max_principal_strain_p99"][-1]), 4),
-            "dt_us": round(1e6 * float(history["dt_s"][closed].mean()), 2), "steps": note["steps"], "ranks": note["ranks"],
-            "wall_s": note["wall_s"], "commit": note["source"]["commit"], "machine": note["source"]["machine"],
-            "load_at_start": note["source"]["load_at_start"]}
+            "dt_us": round(1e6 * float(history["dt_s"][closed].mean()), 2), **flow_runs.made(note)}
     return row
 
 
@@ -56,11 +54,9 @@ def main():
             note = flow_runs.run(f"closed-valve-{held}", folder, values_of(h), asked.ranks, asked.again)
             note["study"] = {"leaflets": held, "h_mm": h}
             (folder / "study.json").write_text(json.dumps(note, indent=1))
-    notes = [(path.parent, json.loads(path.read_text())) for path in RUNS.glob("*/study.json")]
-    rows = [described(folder, note) for folder, note in notes]
+    rows = [described(folder, note) for folder, note in flow_runs.finished(RUNS, lambda study: (study["leaflets"], -study["h_mm"]))]
     if not rows:
         parser.error("no run yet; give --h")
-    rows.sort(key=lambda row: (row["leaflets"], -row["h_mm"]))
     for row in rows:
         print(", ".join(f"{key} {value}" for key, value in row.items() if key not in ("commit", "machine", "load_at_start")))
     write_csv(ROOT / "docs" / "results" / "closed-valve.csv", rows,

@@ -116,9 +116,7 @@ def described(folder, note):
                                            / abs(metrics["w_80_mm_per_s_mean"]), 2),
             "flow_lost_before_throat_percent": round(100 - 100 * metrics["through_throat_mL_per_s_mean"]
                                                      / float(values["boundary.in.flow_mL_per_s"]), 3),
-            "grid_cells": int(metrics["cells"]), "steps": note["steps"], "ranks": note["ranks"], "wall_s": note["wall_s"],
-            "commit": note["source"]["commit"], "machine": note["source"]["machine"],
-            "load_at_start": note["source"]["load_at_start"]}
+            "grid_cells": int(metrics["cells"]), **flow_runs.made(note)}
     return row, stations, (z, w, z_wall, p - np.interp(32.0, z_wall, p))
 
 
@@ -170,9 +168,8 @@ def main():
             note = flow_runs.run("fluid-fda-nozzle", folder, values_of(**study, span_s=asked.span or SPAN_S[reynolds]),
                                  asked.ranks, asked.again)
             (folder / "study.json").write_text(json.dumps(note | {"study": study}, indent=1))
-    notes = [(path.parent, json.loads(path.read_text())) for path in RUNS.glob("*/study.json")]
-    runs = [described(folder, note) for folder, note in sorted(
-        notes, key=lambda one: (one[1]["study"]["reynolds"], one[1]["study"]["cells"], str(one[0])))]
+    runs = [described(folder, note) for folder, note in flow_runs.finished(
+        RUNS, lambda study: (study["reynolds"], study["cells"], study["convection"], study["wall"], study["subgrid"]))]
     if not runs:
         parser.error("no run yet; give --reynolds and --cells")
     for row, _, _ in runs:

@@ -67,9 +67,7 @@ def described(folder, note):
         row |= {"peak_error_percent": round(100 * (largest / right.max() - 1), 2),
                 "peak_time_error": round(at - float(at_t[right.argmax()]), 3), "l2_error_percent": over(1e9),
                 "l2_error_to_t_5_percent": over(5)}
-    row |= {"steps": note["steps"], "ranks": note["ranks"], "wall_s": note["wall_s"], "commit": note["source"]["commit"],
-            "machine": note["source"]["machine"], "load_at_start": note["source"]["load_at_start"]}
-    return row, (t, rate, viscous)
+    return row | flow_runs.made(note), (t, rate, viscous)
 
 
 def picture(runs, path):
@@ -101,9 +99,7 @@ def main():
             note = flow_runs.run("fluid-taylor-green-re1600", folder, values_of(cells, scheme), asked.ranks, asked.again)
             note["study"] = {"scheme": scheme, "cells": cells}
             (folder / "study.json").write_text(json.dumps(note, indent=1))
-    notes = [(path.parent, json.loads(path.read_text())) for path in RUNS.glob("*/study.json")]
-    runs = [described(folder, note) for folder, note in sorted(
-        notes, key=lambda one: (one[1]["study"]["scheme"], one[1]["study"]["cells"]))]
+    runs = [described(folder, note) for folder, note in flow_runs.finished(RUNS, lambda study: (study["scheme"], study["cells"]))]
     if not runs:
         parser.error("no run yet; give --cells")
     for row, _ in runs:

@@ -12,6 +12,7 @@ runs are made and not compared.
 """
 
 import argparse
+import csv
 import json
 from pathlib import Path
 
@@ -25,12 +26,14 @@ import flow_runs
 from structure_runs import ROOT, provenance, write_csv
 
 RUNS = ROOT / "runs" / "study-turek-hron"
-PUBLISHED = ROOT.parent / "shared" / "reference" / "fsi" / "turek_hron.csv"
+PUBLISHED = flow_runs.REFERENCE.parent / "fsi" / "turek_hron.csv"
 ENDS_S = {"fsi1": 9, "fsi2": 13, "fsi3": 10}
 FROM_S = {"fsi1": 0, "fsi2": 11, "fsi3": 8}
 LENGTH_MM = {"fsi1": 1000, "fsi2": 1200, "fsi3": 1200}
 BAR_MM = 351.01020514433643
-QUANTITIES = {"A_x_mm": "ux", "A_y_mm": "uy", "drag_N_per_m": "drag", "lift_N_per_m": "lift"}
+# What the published table calls a quantity and its mean; amplitude and frequency end in _amp and _Hz.
+QUANTITIES = {"A_x_mm": ("ux", "ux_A_mm_mean"), "A_y_mm": ("uy", "uy_A_mm_mean"),
+              "drag_N_per_m": ("drag", "drag_N_m_mean"), "lift_N_per_m": ("lift", "lift_N_m_mean")}
 
 
 def values_of(case, cells):
@@ -59,19 +62,16 @@ def published(case):
     """Row of the published table, or nothing."""
     if not PUBLISHED.exists():
         return {}
-    lines = [line for line in PUBLISHED.read_text().splitlines() if not line.startswith("#")]
-    names = lines[0].split(",")
-    for line in lines[1:]:
-        row = dict(zip(names, line.split(",")))
-        if row["test"] == case.upper():
-            return row
-    return {}
+    with open(PUBLISHED, newline="") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        return next((row for row in rows if row["test"] == case.upper()), {})
 
 
-def figure_of(row, name, what):
-    """A published figure: what is mean, amp or Hz."""
-    key = next((k for k in row if k.startswith(name) and k.endswith(what)), None)
-    return float(row[key]) if key and row[key] else None
+def figure_of(row, quantity, what):
+    """A published figure, or None; what: mean, amp or Hz."""
+    short, mean = QUANTITIES[quantity]
+    text = row.get(mean if what == "mean" else f"{short}_{what}")
+    return float(text) if text else None
 
 
 def described(folder, note):
@@ -79,7 +79,7 @@ def described(folder, note):
     t, all_y = courses(folder, note)
     row = {"case": case, "cells": note["study"]["cells"]}
     table = published(case)
-    for name, short in QUANTITIES.items():
+    for name in QUANTITIES:
         if case == "fsi1":
             found = {"mean": round(float(all_y[name][-1]), 5)}
         else:
@@ -89,10 +89,9 @@ def described(folder, note):
                      "Hz": frequency(t[late], y) if name.startswith("A_") else ""}
         for what in ("mean", "amp", "Hz"):
             row[f"{name}_{what}"] = found.get(what, "")
-            given = figure_of(table, short, what)
+            given = figure_of(table, name, what)
             row[f"{name}_{what}_published"] = given if given is not None and found.get(what, "") != "" else ""
-    return row | {"steps": note["steps"], "ranks": note["ranks"], "wall_s": note["wall_s"], "commit": note["source"]["commit"],
-                  "machine": note["source"]["machine"], "load_at_start": note["source"]["load_at_start"]}
+    return row | flow_runs.made(note)
 
 
 def picture(runs, path):
@@ -101,10 +100,10 @@ def picture(runs, path):
         mine = [(folder, note) for folder, note in runs if note["study"]["case"] == case]
         for folder, note in mine:
             t, y = courses(folder, note)
-            late = t >= max(FROM_S[case], 0)
+            late = t >= FROM_S[case]
             axis.plot(t[late], y["A_y_mm"][late], linewidth=1, label=f"{note['study']['cells']} cells across the channel")
         table = published(case)
-        mean, amplitude = figure_of(table, "uy", "mean"), figure_of(table, "uy", "amp")
+        mean, amplitude = figure_of(table, "A_y_mm", "mean"), figure_of(table, "A_y_mm", "amp")
         for value in {mean} if amplitude is None else {mean - amplitude, mean + amplitude}:
             if value is not None:
                 axis.axhline(value, color="k", linestyle="--", linewidth=0.8)
@@ -129,8 +128,7 @@ def main():
             folder = RUNS / f"{case}-{cells}"
             note = flow_runs.run(f"fsi-turek-hron-{case}", folder, values_of(case, cells), asked.ranks, asked.again)
             (folder / "study.json").write_text(json.dumps(note | {"study": {"case": case, "cells": cells}}, indent=1))
-    notes = [(path.parent, json.loads(path.read_text())) for path in RUNS.glob("*/study.json")]
-    runs = sorted(notes, key=lambda one: (one[1]["study"]["case"], one[1]["study"]["cells"]))
+    runs = flow_runs.finished(RUNS, lambda study: (study["case"], study["cells"]))
     if not runs:
         parser.error("no run yet; give --cases")
     rows = [described(folder, note) for folder, note in runs]
