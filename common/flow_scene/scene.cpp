@@ -57,7 +57,7 @@ fluid::Grid grid_of(const Case& scene, const Sides& sides) {
           file, count, h, "xyz"[e], asked);
     grid.cells[own] = static_cast<int>(asked) + sides.more_cells(e, 0) + sides.more_cells(e, 1);
     grid.origin[own] = low[e] - sides.more_cells(e, 0) * h;
-    const int needed = sides.periodic(e) && !sides.fluid_cells() ? 1 : fluid::ghosts;
+    const int needed = fluid::fewest_cells(sides.periodic(e), sides.fluid_cells());
     if (grid.cells[own] < needed)
       throw InputError("{}: fluid: {} cells along {}; expected at least {}", file, grid.cells[own], "xyz"[e],
                        needed);

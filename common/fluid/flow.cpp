@@ -15,7 +15,7 @@ namespace {
 const Boundaries& checked(const Boundaries& boundaries, const Grid& grid, const FlowParameters& parameters) {
   boundaries.check();
   for (int d = 0; d < 3; ++d) {
-    const int needed = boundaries.periodic(d) && !parameters.krylov ? 1 : ghosts;
+    const int needed = fewest_cells(boundaries.periodic(d), parameters.krylov.has_value());
     if (grid.cells[d] < needed)
       throw InputError(
           "fluid grid: {} cells along {}; expected at least {}: refine the grid or enlarge the box",

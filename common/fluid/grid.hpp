@@ -19,6 +19,12 @@ namespace valsalva::fluid {
 
 inline constexpr int ghosts = 3;
 
+/// Along a direction: one between periodic sides (a plane flow), unless the pressure is that of the fluid's
+/// cells alone.
+inline int fewest_cells(bool periodic, bool fluid_cells_alone) {
+  return periodic && !fluid_cells_alone ? 1 : ghosts;
+}
+
 struct Grid {
   std::array<int, 3> cells{1, 1, 1};
   Vec3 origin = Vec3::Zero();  ///< the low corner of the box

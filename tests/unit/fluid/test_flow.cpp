@@ -271,6 +271,8 @@ TEST(Grid, TooManyRanksOrOneSidedPeriodicityAreRefused) {
   grid.cells = {8, 8, 2};
   Boundaries boundaries;
   EXPECT_THROW(Flow(MPI_COMM_SELF, grid, boundaries, {}), InputError);  // walls
+  grid.cells = {8, 8, 0};
+  EXPECT_THROW(Slab(MPI_COMM_SELF, grid, true), InputError);
   boundaries.side[0][0] = Side::periodic;
   EXPECT_THROW(boundaries.check(), InputError);
   boundaries.side[0] = {Side::open, Side::open};
