@@ -51,7 +51,6 @@ void record_files(StageContext& context) {
   for (const Case& entry : context.scene.entries("obstacle")) record(entry, "obstacle.file");
   for (const Case& entry : context.scene.entries("boundary")) record(entry, "boundary.factor_file");
   for (const Case& entry : context.scene.entries("opening")) record(entry, "opening.factor_file");
-  for (const Case& entry : context.scene.entries("opening")) record(entry, "opening.factor_file");
   for (const Case& entry : context.scene.entries("body"))
     if (entry.text("body.shape") == "file") record(entry, "body.file");
   for (const Case& entry : context.scene.entries("contact_pair")) record(entry, "contact_pair.file");

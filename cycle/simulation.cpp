@@ -33,7 +33,10 @@ Simulation::Simulation(MPI_Comm comm, const Inputs& in, const Parameters& p)
                      in.parent.source, in.low_z_mm, in.high_z_mm);
   terminals_ = std::make_unique<Terminals>(p.circulation, p.initialisation_s,
                                            p.fluid.density * grid.h * grid.cells[2] / area);
-  terminals_->require_bearable(p.coupling.limits.largest_s, in.parent.source);
+  ends_ = std::make_unique<coupling::ImplicitEnds>(*flow_);
+  ends_->add({fluid::End::low, [this] { return -flow_->flow_through(fluid::End::low); }});
+  ends_->add({fluid::End::high, [this] { return flow_->flow_through(fluid::End::high); }});
+  flow_->after_projection([this](double dt, const fluid::StepReport& found) { return meet_ends(dt, found); });
   system_ = std::make_unique<coupling::ImmersedFlow>(
       *flow_, in.leaflets ? shell_of(comm, *in.leaflets, p) : nullptr, p.coupling);
   recorder_ = std::make_unique<Recorder>(in, p, *system_, std::move(device));
@@ -48,13 +51,22 @@ void Simulation::advance() {
   const std::vector<double> before = terminals_->save();
   last_ = system_->step(left, [&](double dt) {
     terminals_->restore(before);
-    terminals_->advance(time_s_, dt, low, high);
+    terminals_->begin(time_s_, dt, low, high);
     flow_->set_end_pressure(fluid::End::low, terminals_->low_pressure());
     flow_->set_end_pressure(fluid::End::high, terminals_->high_pressure());
   });
   time_s_ = last_.dt_s >= left ? p_.end_s : time_s_ + last_.dt_s;
   ++steps_;
   recorder_->after_step(time_s_, last_, *terminals_);
+}
+
+fluid::StepReport Simulation::meet_ends(double dt, const fluid::StepReport& found) {
+  const std::array<coupling::Answer, 2> answers = terminals_->answers();
+  if (!answers[0] && !answers[1]) return found;
+  const fluid::StepReport report = ends_->settle(dt, found, {answers.begin(), answers.end()});
+  terminals_->finish({ends_->outflow(0), ends_->outflow(1)},
+                     {flow_->end_pressure(fluid::End::low), flow_->end_pressure(fluid::End::high)});
+  return report;
 }
 
 void Simulation::step() {

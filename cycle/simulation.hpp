@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "coupling/implicit_ends.hpp"
 #include "coupling/rescue.hpp"
 #include "inputs.hpp"
 #include "recorder.hpp"
@@ -37,6 +38,7 @@ class Simulation {
   coupling::Rescue::Arrays copy() const;
   void return_to(const state::State& copy);
   void advance();
+  fluid::StepReport meet_ends(double dt, const fluid::StepReport& found);
 
   MPI_Comm comm_;
   const Inputs& in_;
@@ -44,6 +46,7 @@ class Simulation {
   std::unique_ptr<fluid::Flow> flow_;
   std::unique_ptr<coupling::ImmersedFlow> system_;
   std::unique_ptr<Terminals> terminals_;
+  std::unique_ptr<coupling::ImplicitEnds> ends_;
   std::unique_ptr<Recorder> recorder_;
   coupling::Rescue rescue_;
   coupling::ImmersedStep last_;

@@ -5,22 +5,19 @@
 // with a Windkessel starts from the periodic beat of the 0D loop with an ideal valve.
 //
 // An end answers the flow of the step's start, P(Q), as long as the slope Z = dP/dQ of its answer is small
-// against the domain's inertance, Z dt / L <= 1/8; a larger one makes flow and pressure swing against each
-// other, and grow (from some mmHg s/mL in a valve at draft). Beyond, the pressure goes towards that answer
-// within some ten steps and works against every change of the flow,
-//   P' = P_last + a (1 - k) (P(Q) - P_last) + k a L/dt (Q - Q_last) dt/dt_last,
-//   k = Z / (Z + a L/dt), a = 1/10,
-// and settles at P = P(Q). A column of blood of any such inertance bears that for any Z. The flow domain, in
-// which fluid also goes through what is solid until the next step, was stable at Z dt / L = 0.5 and not at
-// 0.9 (5 and 9 mmHg s/mL at draft): ends steeper than 0.4 L / dt are refused.
+// against the domain's inertance, Z dt / L <= 1/8; a larger one would make flow and pressure swing against
+// each other, and grow (from some mmHg s/mL in a valve at draft). Beyond, its pressure is found together with
+// the flow of the step's end (coupling/implicit_ends.hpp): any slope.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
 #include "circulation/closed_loop.hpp"
 #include "circulation/terminal.hpp"
 #include "circulation_case.hpp"
+#include "coupling/implicit_ends.hpp"
 
 namespace valsalva::cycle {
 
@@ -29,13 +26,16 @@ class Terminals {
   /// inertance: rho length / area of the domain, g/mm4.
   Terminals(const CirculationParameters& p, double initialisation_s, double inertance);
 
-  /// Brings both ends to time_s + dt_s. flows: along +z through the low and the high end, mm3/s.
-  void advance(double time_s, double dt_s, double low_flow, double high_flow);
-  /// InputError that names the end whose answer is steeper than 0.4 L / largest_step_s. A prescribed flow is
-  /// not looked at.
-  void require_bearable(double largest_step_s, const std::string& file);
-  double low_pressure() const { return low_Pa_; }
-  double high_pressure() const { return high_Pa_; }
+  /// Before a step from time_s to time_s + dt_s: gentle ends go there with the flow at its start; steep ones
+  /// keep their pressure until `finish`. low_flow, high_flow: along +z through the ends, mm3/s.
+  void begin(double time_s, double dt_s, double low_flow, double high_flow);
+  /// What the low and the high end answer to a flow out of the domain at the end of the step; empty for
+  /// those that begin has brought there.
+  std::array<coupling::Answer, 2> answers();
+  /// Brings the steep ends to the end of the step, with the flows out of the domain and the pressures there.
+  void finish(const std::array<double, 2>& outflow, const std::array<double, 2>& pressure);
+  double low_pressure() const { return end_[0].pressure; }
+  double high_pressure() const { return end_[1].pressure; }
 
   /// Null where the upstream is not a heart.
   const circulation::LeftHeart* heart() const { return heart_; }
@@ -48,13 +48,22 @@ class Terminals {
   void restore(const std::vector<double>& saved);
 
  private:
+  struct End {
+    std::unique_ptr<circulation::Terminal> model;
+    double resistance = 0;            ///< next to the domain, which acts before the beat already, Pa s/mm3
+    double start = 0;                 ///< pressure at which the beat starts, Pa
+    double pressure = 0;              ///< at the end of the last step, Pa
+    bool steep = false;               ///< in the running step
+    std::vector<double> before = {};  ///< the model at the start of the running step
+  };
+  double answer(End& end, double outflow);
+
   CirculationParameters parameters_;
   double initialisation_s_, inertance_;
-  std::unique_ptr<circulation::Terminal> low_, high_;
+  std::array<End, 2> end_;  ///< low, high
   circulation::LeftHeart* heart_ = nullptr;
   std::optional<circulation::PeriodicBeat> expected_;
-  double low_start_Pa_ = 0, high_start_Pa_ = 0, low_Pa_ = 0, high_Pa_ = 0;
-  double last_low_ = 0, last_high_ = 0, last_dt_s_ = 0;  ///< flows into the terminals, of the last step
+  double time_s_ = 0, dt_s_ = 0;  ///< of the running step
 };
 
 }  // namespace valsalva::cycle

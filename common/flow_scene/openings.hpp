@@ -23,6 +23,11 @@ class Openings {
 
   bool any() const { return !openings_.empty(); }
   bool have_known_pressure() const;
+  /// Null where the flow is known.
+  const KnownPressure* pressure(int opening) const {
+    return openings_[opening].pressure ? &*openings_[opening].pressure : nullptr;
+  }
+  int count() const { return static_cast<int>(openings_.size()); }
   int find(const std::string& name, const std::string& what) const;
 
   /// After the obstacles, and before the flow's velocity is set. more_cells(axis, side): of the box beyond a

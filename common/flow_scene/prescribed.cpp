@@ -90,6 +90,14 @@ void KnownPressure::advance(double time_s, double dt_s, double outflow) {
   if (terminal_) terminal_->advance(time_s, dt_s, outflow);
 }
 
+double KnownPressure::after(double time_s, double dt_s, double outflow) const {
+  const std::vector<double> kept = terminal_->save();
+  terminal_->advance(time_s, dt_s, outflow);
+  const double pressure = terminal_->pressure();
+  terminal_->restore(kept);
+  return pressure;
+}
+
 std::vector<double> KnownPressure::save() const {
   return terminal_ ? terminal_->save() : std::vector<double>{};
 }

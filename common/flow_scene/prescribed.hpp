@@ -30,6 +30,9 @@ class KnownPressure {
  public:
   KnownPressure(const Case& scene, const Case& entry, const std::string& table);
   double at(double time_s) const;  ///< Pa
+  bool modelled() const { return terminal_ != nullptr; }
+  /// Of a model, which stays as it is: its pressure after a time dt with this flow out of the box.
+  double after(double time_s, double dt_s, double outflow) const;
   /// After a step with this flow out of the box, mm3/s.
   void advance(double time_s, double dt_s, double outflow);
   std::vector<double> save() const;

@@ -179,7 +179,8 @@ void FlowScene::start(const Case& scene) {
     for (const std::string& name : probe.texts("flow_probe.with"))
       obstacles_.prepare_loads(*flow_, frame(), name);
   }
-  sides_.set(*flow_, 0);
+  sides_.couple(*flow_);
+  sides_.set(*flow_, 0, 0);
   const auto at_start = [&](int d, const Vec3& x) {
     return velocity.component(frame().case_axis(d), frame().to_case(x), 0);
   };
@@ -245,7 +246,7 @@ double FlowScene::next_step_s() const {
 
 void FlowScene::prescribe(double time_s) {
   if (obstacles_.move()) obstacles_.update(*flow_, frame(), time_s);
-  sides_.set(*flow_, time_s);
+  sides_.set(*flow_, time_s_, time_s);
 }
 
 void FlowScene::step() {
@@ -409,7 +410,7 @@ void FlowScene::load_run(const state::State& state) {
   sides_.restore(state.array("scene/outlets").doubles("scene/outlets"));
   probes_.restore(state.array("scene/means").doubles("scene/means"));
   if (obstacles_.move()) obstacles_.update(*flow_, frame(), time_s_);
-  sides_.set(*flow_, time_s_);
+  sides_.set(*flow_, time_s_, time_s_);
   if (bodies_) {
     bodies_->restore(state.array("scene/bodies").doubles("scene/bodies"));
     bodies_->system().load(state);

@@ -214,7 +214,41 @@ void Sides::balance(fluid::Flow& flow) const {
   each([&](int axis, int side) { flow.shift_inflow(axis, side, -net / area); });
 }
 
-void Sides::set(fluid::Flow& flow, double time_s) {
+void Sides::couple(fluid::Flow& flow) {
+  ends_ = std::make_unique<coupling::ImplicitEnds>(flow);
+  const auto add = [&](const KnownPressure& pressure, coupling::ImplicitEnds::Place place) {
+    if (!pressure.modelled()) return;
+    ends_->add(std::move(place));
+    modelled_.push_back(&pressure);
+  };
+  for (const Outlet& outlet : outlets_)
+    add(outlet.pressure, {outlet.end == 0 ? fluid::End::low : fluid::End::high,
+                          [&flow, end = outlet.end] { return flow.outflow(2, end); }});
+  for (int o = 0; o < openings_.count(); ++o)
+    if (const KnownPressure* pressure = openings_.pressure(o))
+      add(*pressure, {o, [&flow, o] { return flow.opening_flow(o); }});
+  if (!modelled_.empty())
+    flow.after_projection(
+        [this](double dt_s, const fluid::StepReport& found) { return meet_models(dt_s, found); });
+}
+
+fluid::StepReport Sides::meet_models(double dt_s, const fluid::StepReport& found) {
+  std::vector<coupling::Answer> answers(modelled_.size());
+  for (std::size_t i = 0; i < modelled_.size(); ++i) {
+    const auto answer = [this, model = modelled_[i]](double outflow) {
+      return model->after(start_s_, until_s_ - start_s_, outflow);
+    };
+    const int place = static_cast<int>(i);
+    if (coupling::slope(answer, ends_->outflow(place)) * dt_s * ends_->taken_by_itself(place) >
+        coupling::explicit_until)
+      answers[i] = answer;
+  }
+  return ends_->settle(dt_s, found, answers);
+}
+
+void Sides::set(fluid::Flow& flow, double start_s, double time_s) {
+  start_s_ = start_s;
+  until_s_ = time_s;
   for (int axis = 0; axis < 3; ++axis) {
     for (int side = 0; side < 2; ++side) {
       if (entry_of_[axis][side] < 0) continue;

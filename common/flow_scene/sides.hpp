@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/case.hpp"
+#include "coupling/implicit_ends.hpp"
 #include "flow_scene/expression.hpp"
 #include "flow_scene/frame.hpp"
 #include "flow_scene/openings.hpp"
@@ -28,6 +29,8 @@ class Sides {
  public:
   /// InputError that names the entry: a side twice, open sides along two axes, profiles without speed ...
   explicit Sides(const Case& scene);
+  Sides(const Sides&) = delete;
+  Sides& operator=(const Sides&) = delete;
 
   const Frame& frame() const { return frame_; }
   bool periodic(int case_axis) const { return kind_[case_axis][0] == fluid::Side::periodic; }
@@ -50,9 +53,13 @@ class Sides {
   /// In the solver's axes.
   fluid::Boundaries boundaries() const;
 
-  /// Sets everything that is prescribed, as it is at time_s. The flow's obstacles must stand. InputError when
-  /// a box without outflow is asked to take in more than it lets out.
-  void set(fluid::Flow& flow, double time_s);
+  /// Models behind places of known pressure that answer steeply are solved together with the flow's steps
+  /// from now on (coupling/implicit_ends.hpp); the others answer after each step. The flow must outlive this
+  /// object.
+  void couple(fluid::Flow& flow);
+  /// Sets everything that is prescribed, as it is at time_s, within a step from start_s. The flow's obstacles
+  /// must stand. InputError when a box without outflow is asked to take in more than it lets out.
+  void set(fluid::Flow& flow, double start_s, double time_s);
   /// After a step: what stands behind the outflow sides answers.
   void advance(fluid::Flow& flow, double time_s, double dt_s);
   /// The largest |u|+|v|+|w| that sides prescribe now, mm/s (collective).
@@ -79,6 +86,7 @@ class Sides {
   Entry read(const Case& scene, const Case& entry) const;
   void set_inflow(fluid::Flow& flow, const Entry& entry, const SideOfBox& side, double time_s) const;
   void balance(fluid::Flow& flow) const;
+  fluid::StepReport meet_models(double dt_s, const fluid::StepReport& found);
 
   std::vector<Entry> entries_;
   std::array<std::array<fluid::Side, 2>, 3> kind_{};  ///< in the axes of the case
@@ -88,6 +96,9 @@ class Sides {
   bool fluid_cells_ = false;
   Frame frame_;
   std::vector<Outlet> outlets_;
+  std::unique_ptr<coupling::ImplicitEnds> ends_;
+  std::vector<const KnownPressure*> modelled_;  ///< of the places of ends_
+  double start_s_ = 0, until_s_ = 0;            ///< of the running step
 };
 
 }  // namespace valsalva::flow_scene

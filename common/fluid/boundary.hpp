@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <array>
+#include <variant>
 #include <vector>
 
 #include "core/types.hpp"
@@ -30,6 +31,13 @@ namespace valsalva::fluid {
 
 enum class Side { periodic, slip, wall, open, inflow };
 enum class End { low = 0, high = 1 };  ///< of the z-axis
+
+/// Where the pressure is known: an open end, or the number of an opening (openings.hpp).
+using PressurePlace = std::variant<End, int>;
+struct PressureRise {
+  PressurePlace place;
+  double by = 0;  ///< Pa
+};
 
 /// Velocity on one side of the box, mm/s: component d where its field has entries, projected on the side.
 /// Of one rank; a and b count along the two other axes, the lower axis first, from the slab's first entry on.

@@ -119,6 +119,18 @@ class Flow {
   /// Pressure of the reservoir at an open end, Pa.
   void set_end_pressure(End end, double pressure) { end_pressure_[static_cast<int>(end)] = pressure; }
   double end_pressure(End end) const { return end_pressure_[static_cast<int>(end)]; }
+  double known_pressure(const PressurePlace& place) const;
+  /// Called at the end of every projection over dt, before ghosts are filled; returns what is to be reported
+  /// instead. For what answers to the new velocity (raise).
+  void after_projection(std::function<StepReport(double dt, const StepReport& found)> hook) {
+    after_projection_ = std::move(hook);
+  }
+  /// Within after_projection: as though these pressures had been known higher at the end of the step. Exact,
+  /// without another solve but one for each place whenever the fluid's cells have changed (krylov).
+  StepReport raise(const std::vector<PressureRise>& rises, double dt);
+  /// What raise adds to a velocity (owned faces).
+  void add_response(const std::vector<PressureRise>& rises, double dt, FaceField& velocity);
+
   /// Tangential velocity of a wall from now on, mm/s. Ghosts take it with the next step or fill_ghosts().
   void set_wall_velocity(int axis, int side, const Vec3& velocity) {
     boundaries_.velocity[axis][side] = velocity;
@@ -236,6 +248,11 @@ class Flow {
   StepReport correct_cells(double dt);
   double largest_predicted() const;
   void extend_pressure();
+  // Answers to known pressures: flow_response.cpp.
+  const Field& unit_pressure(const PressurePlace& place);
+  void gather_rises(const std::vector<PressureRise>& rises);
+  double raised_at(int k) const;
+  StepReport measure(double dt) const;
   void fill_source_fourth_order(int k, double per_dt, double* plane) const;
   StepReport correct_fourth_order(double dt);
   /// The low faces of a cell of the local plane k.
@@ -276,8 +293,13 @@ class Flow {
   FaceField velocity_, next_, rate_, force_;
   Field pressure_, correction_;
   std::array<double, 2> end_pressure_{};
-  double previous_dt_ = 0;     ///< 0: no history
-  bool keep_pressure_ = true;  ///< of the running step: incremental
+  std::function<StepReport(double dt, const StepReport& found)> after_projection_;
+  std::map<PressurePlace, Field> unit_pressure_;  ///< krylov: 1 at the place, 0 at the others
+  std::array<double, 2> raised_end_{};            ///< of raise and add_response: at the ends,
+  std::vector<double> raised_opening_;            ///< at the openings,
+  std::optional<Field> raised_;                   ///< and in the cells (krylov)
+  double previous_dt_ = 0;                        ///< 0: no history
+  bool keep_pressure_ = true;                     ///< of the running step: incremental
 };
 
 }  // namespace valsalva::fluid

@@ -64,6 +64,7 @@ void Flow::prepare_cells() {
     }
   }
   list_cells();
+  unit_pressure_.clear();
   cells_of_version_ = solids_.version();
 }
 
@@ -148,12 +149,13 @@ StepReport Flow::project_cells(double dt) {
   krylov_->solve(
       [&](int k, double* plane) {
         fill_source(k, 1 / dt, Given::velocity, plane);
-        if (!keep_pressure_) openings_->add_known_pressure(k, plane);
+        if (!keep_pressure_) openings_->add_known_pressure(k, openings_->pressures(), plane);
       },
       [&](int k, const double* plane) { keep_correction(k, plane); });
   fill_phi_ghosts(correction_, keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_);
-  const StepReport report = correct_cells(dt);
+  StepReport report = correct_cells(dt);
   if (!std::isfinite(report.kinetic_energy)) report_not_finite();
+  if (after_projection_) report = after_projection_(dt, report);
   extend_pressure();
   fill_ghosts();
   return report;
@@ -174,7 +176,8 @@ StepReport Flow::correct_cells(double dt) {
       }
     }
   }
-  openings_->correct(factor, keep_pressure_, correction_, velocity_);
+  const std::vector<double> unchanged(openings_->count(), 0.0);
+  openings_->correct(factor, keep_pressure_ ? unchanged : openings_->pressures(), correction_, velocity_);
   speed = std::max(speed, openings_->largest_speed(velocity_));
   const double *u = velocity_[0].data().data(), *v = velocity_[1].data().data(),
                *w = velocity_[2].data().data();

@@ -88,8 +88,9 @@ StepReport Flow::project(double dt) {
       [&](int k, const double* plane) { keep_correction(k, plane); });
   const std::array<double, 2> ends = keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_;
   fill_phi_ghosts(correction_, ends);
-  const StepReport report = fourth ? correct_fourth_order(dt) : correct(dt);
+  StepReport report = fourth ? correct_fourth_order(dt) : correct(dt);
   if (!std::isfinite(report.kinetic_energy)) report_not_finite();
+  if (after_projection_) report = after_projection_(dt, report);
   fill_ghosts();
   return report;
 }

@@ -337,9 +337,10 @@ void KrylovPressure::solve(const Source& source, const Sink& sink, Planes) {
 
   // PETSc measures norms, this class root mean squares.
   const double floor = std::max(1e-300, h2 * floor_ * std::sqrt(all_unknowns_));
-  require(
-      KSPSetTolerances(petsc_->solver, settings_.tolerance, floor, PETSC_DEFAULT, settings_.most_iterations),
-      "tolerances");
+  // Where b all but vanishes, the last phi starts far above it: that is no divergence.
+  constexpr double no_limit = 1e300;
+  require(KSPSetTolerances(petsc_->solver, settings_.tolerance, floor, no_limit, settings_.most_iterations),
+          "tolerances");
   const PetscErrorCode code = KSPSolve(petsc_->solver, petsc_->b, petsc_->x);
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   require(KSPGetConvergedReason(petsc_->solver, &reason), "reason");

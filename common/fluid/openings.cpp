@@ -301,12 +301,12 @@ void Openings::apply(FaceField& conductance, Field& known) const {
   for (const KnownCell& cell : known_) known(cell.i, cell.j, cell.k) += cell.conductance;
 }
 
-void Openings::add_known_pressure(int k, double* plane) const {
+void Openings::add_known_pressure(int k, const std::vector<double>& known, double* plane) const {
   const double h = slab_.grid.h;
   for (const KnownCell& cell : known_) {
     if (cell.k == k)
       plane[static_cast<std::size_t>(cell.j) * slab_.grid.cells[0] + cell.i] -=
-          cell.conductance * pressure_[cell.opening] / (h * h);
+          cell.conductance * known[cell.opening] / (h * h);
   }
 }
 
@@ -378,12 +378,12 @@ void Openings::prescribe(FaceField& velocity) const {
     if (known_flow(face.opening)) velocity[face.d].data()[face.face] = face.shape * flow_[face.opening];
 }
 
-void Openings::correct(double factor, bool incremental, const Field& phi, FaceField& velocity) const {
+void Openings::correct(double factor, const std::vector<double>& known, const Field& phi,
+                       FaceField& velocity) const {
   for (const Face& face : faces_) {
     if (known_flow(face.opening)) continue;
-    const double known = incremental ? 0 : pressure_[face.opening];
     velocity[face.d].data()[face.face] -=
-        factor * face.outward * face.inverse * (known - phi.data()[face.cell]);
+        factor * face.outward * face.inverse * (known[face.opening] - phi.data()[face.cell]);
   }
 }
 

@@ -53,15 +53,16 @@ class Openings {
   void set_pressure(int opening, double pressure) { pressure_[opening] = pressure; }  ///< Pa
   void set_flow(int opening, double outwards) { flow_[opening] = outwards; }          ///< mm3/s
   double pressure(int opening) const { return pressure_[opening]; }
+  const std::vector<double>& pressures() const { return pressure_; }
 
   /// Finds cells and faces as the solids stand, and takes what lies beyond out of the fluid. Collective; anew
   /// when solids change. InputError: no fluid in an opening, or fluid beside it.
   void build(Solids& solids);
   /// Takes the openings' faces out of the conductances between cells; known: d of krylov_pressure.hpp.
   void apply(FaceField& conductance, Field& known) const;
-  /// What known pressures add to the plane k of h^-2 times the equation's right-hand side, where phi is the
-  /// pressure itself.
-  void add_known_pressure(int k, double* plane) const;
+  /// What known pressures (of all openings, Pa) add to the plane k of h^-2 times the equation's right-hand
+  /// side, where phi is the pressure itself.
+  void add_known_pressure(int k, const std::vector<double>& known, double* plane) const;
   /// Takes a face out of the fluid for good.
   void shut(Solids& solids, int d, int i, int j, int k) const { solids.claim(body_, d, i, j, k); }
   /// Shuts the faces of cells that are not solved for: corners that nothing else joins with the fluid.
@@ -73,8 +74,8 @@ class Openings {
   void advance(const FaceField& velocity, const Advance& step, FaceField& rate, FaceField& next) const;
   /// Faces of known flow.
   void prescribe(FaceField& velocity) const;
-  /// u -= factor dphi/dx_d h on the faces of known pressure; phi there is 0, or the pressure itself.
-  void correct(double factor, bool incremental, const Field& phi, FaceField& velocity) const;
+  /// u -= factor dphi/dx_d h on the faces of known pressure, where phi is `known` (of all openings).
+  void correct(double factor, const std::vector<double>& known, const Field& phi, FaceField& velocity) const;
   /// Velocity beyond the planes; ghost planes of neighbours must be valid.
   void extend(FaceField& velocity) const;
 

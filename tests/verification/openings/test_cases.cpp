@@ -1,4 +1,6 @@
 // Openings from case files: a vessel that forks, sides of several axes, resuming, and mistakes.
+#include <cstring>
+
 #include "expect_error.hpp"
 #include "run_case.hpp"
 
@@ -109,8 +111,34 @@ TEST(OpeningCases, AForkSharesTheFlowAsItsResistancesSay) {
   EXPECT_NEAR(run.metric("p_right_Pa"), 100 * right, 0.02);
 }
 
-TEST(OpeningCases, AResumedRunIsTheSameBitForBit) {
-  FlowRun whole(branching), before(branching), after(branching);
+namespace {
+
+// The same vessel with resistances far beyond its inertance over a step (about 100 Pa s/mL).
+std::string steep_branching() {
+  std::string text = branching;
+  for (const auto& [from, to] : {std::pair{"= 100\n", "= 1e5\n"}, std::pair{"= 200\n", "= 2e5\n"}})
+    text.replace(text.find(from), std::strlen(from), to);
+  return text;
+}
+
+}  // namespace
+
+TEST(OpeningCases, AForkSharesTheFlowAsLargeResistancesSay) {
+  FlowRun run(steep_branching());
+  run.to_end();
+  const double right = run.metric("right_mL_per_s"), left = run.metric("left_mL_per_s");
+  EXPECT_NEAR(right + left, 1.5, 1e-9);
+  EXPECT_NEAR(right / left, 2, 2e-4);
+  EXPECT_NEAR(run.metric("p_right_Pa"), 1e5 * right, 1);
+}
+
+class ResumedOpenings : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Answers, ResumedOpenings, testing::Bool(),
+                         [](const auto& steep) { return steep.param ? "Steep" : "Gentle"; });
+
+TEST_P(ResumedOpenings, GoOnBitForBit) {
+  const std::string text = GetParam() ? steep_branching() : branching;
+  FlowRun whole(text), before(text), after(text);
   for (int step = 0; step < 130; ++step) before.step();
   state::State stored;
   stored.restart = before.scene.save();
