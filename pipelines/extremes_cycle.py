@@ -140,11 +140,11 @@ def heart_rate():
 
 def resistance():
     """120 mmHg upstream, a resistance to 80 mmHg downstream: at the end p = 80 mmHg + R Q."""
-    for series, values in (("down to none", (0.05, 0.005, 0.0)), ("up to infinite", (0.5, 1.5, 3.5, 5.0, 1e6, "inf"))):
+    for series, values in (("down to none", (0.05, 0.005, 0.0)), ("up to infinite", (0.5, 1.5, 3.5, 9.0, 50.0, 1e3, 1e6, 1e12))):
         for value in values:
             result = run(f"resistance_{value}", steady(120, 80, value) | {"cycle.duration_s": 0.04})
             error, remark = None, ""
-            if solved(result) and value != "inf":
+            if solved(result):
                 q, p = mean(result, "q_mL_per_s", 0.03), mean(result, "p_ao_mmHg", 0.03)
                 # The pressure is read 3 mm inside; the head of the jet there is not known better than by the mean flow.
                 error = abs(p - 80 - value * q) / 40

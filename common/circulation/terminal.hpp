@@ -3,7 +3,8 @@
 // The flow is counted into the terminal (out of the domain), in mm3/s. The domain hands over the flow of its
 // present step, the terminal answers with the pressure of the end of the step, Pa. The lag is harmless as
 // long as the domain's inertance L = rho length / area exceeds R dt (about 2e-4 g/mm4 against 6e-7 for an
-// aorta). Every terminal is stable for any dt on its own.
+// aorta); beyond, the domain asks for answers to the flow of the step's end (coupling/implicit_ends.hpp).
+// Every terminal is stable for any dt on its own.
 #pragma once
 
 #include <string>

@@ -50,4 +50,9 @@ void sum_in_place(MPI_Comm comm, double* values, std::size_t count) {
   MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, comm);
 }
 
+void max_in_place(MPI_Comm comm, double* values, std::size_t count) {
+  if (size(comm) == 1) return;
+  MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(count), MPI_DOUBLE, MPI_MAX, comm);
+}
+
 }  // namespace valsalva::mpi

@@ -24,5 +24,7 @@ double min(MPI_Comm comm, double value);
 bool any(MPI_Comm comm, bool value);
 /// Adds the vectors of all ranks, element by element; every rank holds the sum. Sizes must agree.
 void sum_in_place(MPI_Comm comm, double* values, std::size_t count);
+/// The largest of all ranks, element by element.
+void max_in_place(MPI_Comm comm, double* values, std::size_t count);
 
 }  // namespace valsalva::mpi

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "coupling/sampling.hpp"
 #include "coupling/standoff.hpp"
 #include "materials/capped_exponential.hpp"
 
@@ -32,6 +33,13 @@ ImmersedShell::ImmersedShell(MPI_Comm comm, structure::Shell shell, Points rest,
       x_(std::move(start)),
       clamped_(std::move(clamped)) {
   VALSALVA_ASSERT(x_.size() == static_cast<std::size_t>(shell_.nodes()) && clamped_.size() == x_.size());
+  const std::vector<Edge> edges = edges_of(cells_of(shell_.mesh().triangles));
+  const std::size_t from = edges.size() * part_.index / part_.count,
+                    to = edges.size() * (part_.index + 1) / part_.count;
+  edges_.assign(edges.begin() + static_cast<long>(from), edges.begin() + static_cast<long>(to));
+  const Points& reference = shell_.mesh().reference;
+  for (const auto& [a, b] : edges_)
+    square_of_reference_.push_back((reference[a] - reference[b]).squaredNorm());
   ahead_ = x_;
   moved();
 }
@@ -46,13 +54,12 @@ void ImmersedShell::set_x(Points x) {
 void ImmersedShell::moved() {
   pairs_ = &near_.find(x_);
   coupled_ = x_;
-  if (!(standoff_ > 0)) return;
+  if (!(standoff_ > 0) || pairs_->empty()) return;
   Points normal(x_.size(), Vec3::Zero());
   for (const Triangle& t : shell_.mesh().triangles) {
     const Vec3 twice_area = (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]);
     for (int a : t) normal[a] += twice_area;
   }
-  for (Vec3& n : normal) n.normalize();
   stand_off(standoff_, x_, normal, *pairs_, coupled_);
 }
 
@@ -138,16 +145,15 @@ void ImmersedShell::load(const state::State& state) {
 }
 
 EdgeStretch ImmersedShell::edge_stretch(const Points& since) const {
-  const structure::ShellMesh& mesh = shell_.mesh();
-  double largest = 0, change = 0;  // of squares
-  for (const Triangle& t : mesh.triangles)
-    for (int e = 0; e < 3; ++e) {
-      const int a = t[e], b = t[(e + 1) % 3];
-      const double now = (x_[a] - x_[b]).squaredNorm(), then = (since[a] - since[b]).squaredNorm();
-      largest = std::max(largest, now / (mesh.reference[a] - mesh.reference[b]).squaredNorm());
-      change = std::max(change, std::abs(now - then) / then);
-    }
-  return {std::sqrt(largest), 0.5 * change};
+  std::array<double, 2> most{0, 0};  // of squares: over the reference, change
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const auto [a, b] = edges_[i];
+    const double now = (x_[a] - x_[b]).squaredNorm(), then = (since[a] - since[b]).squaredNorm();
+    most[0] = std::max(most[0], now / square_of_reference_[i]);
+    most[1] = std::max(most[1], std::abs(now - then) / then);
+  }
+  if (part_.count > 1) mpi::max_in_place(comm_, most.data(), most.size());
+  return {std::sqrt(most[0]), 0.5 * most[1]};
 }
 
 }  // namespace valsalva::coupling

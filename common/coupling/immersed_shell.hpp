@@ -50,6 +50,7 @@ class ImmersedShell : public ImmersedBody {
 
   /// x += dt u for free nodes. NumericalFailure when a node is not finite or faster than 2e4 mm/s.
   void move(Points& velocity, double dt) override;
+  /// (collective)
   EdgeStretch edge_stretch(const Points& since) const override;
   double stiffening(double strain) const override;
   std::map<std::string, state::Array> save() const override;
@@ -65,6 +66,8 @@ class ImmersedShell : public ImmersedBody {
   double standoff_;
   NearPairs near_;
   Repulsion repulsion_;
+  std::vector<Edge> edges_;                  // of this rank
+  std::vector<double> square_of_reference_;  // of their lengths
   Points x_, coupled_, ahead_;
   const std::vector<NearPair>* pairs_ = nullptr;  // of near_, at x_
   std::vector<std::uint8_t> clamped_;

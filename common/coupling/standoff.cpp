@@ -20,10 +20,11 @@ void stand_off(double standoff_mm, const Points& x, const Points& normal, const 
     for (int node : {pair.a, pair.b}) lacking[node] = std::max(lacking[node], lack);
   }
   out = x;
-  for (std::size_t a = 0; a < x.size(); ++a)
-    if (lacking[a] > 0)
-      out[a] +=
-          0.5 * lacking[a] * std::clamp(normal[a].dot(away[a].normalized()) / oblique, -1.0, 1.0) * normal[a];
+  for (std::size_t a = 0; a < x.size(); ++a) {
+    if (!(lacking[a] > 0)) continue;
+    const Vec3 m = normal[a].normalized();
+    out[a] += 0.5 * lacking[a] * std::clamp(m.dot(away[a].normalized()) / oblique, -1.0, 1.0) * m;
+  }
 }
 
 }  // namespace valsalva::coupling

@@ -18,7 +18,7 @@
 
 namespace valsalva::coupling {
 
-/// normal: a unit vector a node. near: all pairs nearer than the standoff at x (or more).
+/// normal: of each node, of any length. near: all pairs nearer than the standoff at x (or more).
 void stand_off(double standoff_mm, const Points& x, const Points& normal, const std::vector<NearPair>& near,
                Points& out);
 

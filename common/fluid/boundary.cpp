@@ -113,42 +113,6 @@ void fill_end(const Slab& slab, const Boundaries& boundaries, int side, FaceFiel
   }
 }
 
-void add_and_clear(double* to, double* from, std::ptrdiff_t count) {
-  for (std::ptrdiff_t i = 0; i < count; ++i) to[i] += from[i];
-  std::fill_n(from, count, 0.0);
-}
-
-// Images of a plane that is nearer than the layer is deep come by way of other ghosts: from the outermost on.
-void accumulate_planes(const Slab& slab, Field& field) {
-  const std::ptrdiff_t count = ghosts * slab.stride_z;
-  double* base = field.data().data();
-  double* below = base;
-  double* above = base + (slab.planes + ghosts) * slab.stride_z;
-  double* lowest = base + ghosts * slab.stride_z;
-  double* highest = base + slab.planes * slab.stride_z;
-  if (slab.ranks == 1) {
-    for (int m = ghosts - 1; slab.periodic_z && m >= 0; --m) {
-      add_and_clear(highest + (ghosts - 1 - m) * slab.stride_z, below + (ghosts - 1 - m) * slab.stride_z,
-                    slab.stride_z);
-      add_and_clear(lowest + m * slab.stride_z, above + m * slab.stride_z, slab.stride_z);
-    }
-    return;
-  }
-  const bool has_lower = slab.periodic_z || !slab.is_lowest();
-  const bool has_upper = slab.periodic_z || !slab.is_highest();
-  const int lower = has_lower ? (slab.rank + slab.ranks - 1) % slab.ranks : MPI_PROC_NULL;
-  const int upper = has_upper ? (slab.rank + 1) % slab.ranks : MPI_PROC_NULL;
-  std::vector<double> received(count);
-  const auto shift = [&](double* from, int to_rank, double* to, int from_rank) {
-    MPI_Sendrecv(from, static_cast<int>(count), MPI_DOUBLE, to_rank, 0, received.data(),
-                 static_cast<int>(count), MPI_DOUBLE, from_rank, 0, slab.comm, MPI_STATUS_IGNORE);
-    if (from_rank != MPI_PROC_NULL) add_and_clear(to, received.data(), count);
-    if (to_rank != MPI_PROC_NULL) std::fill_n(from, count, 0.0);
-  };
-  shift(below, lower, highest, upper);
-  shift(above, upper, lowest, lower);
-}
-
 }  // namespace
 
 void Boundaries::check() const {
@@ -189,30 +153,6 @@ void exchange_planes(const Slab& slab, Field& field, int layers) {
   MPI_Sendrecv(lowest, n, MPI_DOUBLE, lower, 0, above, n, MPI_DOUBLE, upper, 0, slab.comm, MPI_STATUS_IGNORE);
   MPI_Sendrecv(highest, n, MPI_DOUBLE, upper, 1, below, n, MPI_DOUBLE, lower, 1, slab.comm,
                MPI_STATUS_IGNORE);
-}
-
-void accumulate_ghosts(const Slab& slab, const Boundaries& boundaries, FaceField& faces) {
-  const int nx = slab.grid.cells[0], ny = slab.grid.cells[1];
-  for (Field& field : faces.component) {
-    accumulate_planes(slab, field);
-    for (int k = 0; k < slab.planes + 1; ++k) {
-      if (boundaries.periodic(1)) {
-        for (int m = ghosts - 1; m >= 0; --m) {
-          add_and_clear(field.row(ny - 1 - m, k) - ghosts, field.row(-1 - m, k) - ghosts, slab.stride_y);
-          add_and_clear(field.row(m, k) - ghosts, field.row(ny + m, k) - ghosts, slab.stride_y);
-        }
-      }
-      if (boundaries.periodic(0)) {
-        for (int j = 0; j < ny; ++j) {
-          double* row = field.row(j, k);
-          for (int m = ghosts - 1; m >= 0; --m) {
-            add_and_clear(row + nx - 1 - m, row - 1 - m, 1);
-            add_and_clear(row + m, row + nx + m, 1);
-          }
-        }
-      }
-    }
-  }
 }
 
 void fill_velocity_ghosts(const Slab& slab, const Boundaries& boundaries, FaceField& velocity) {

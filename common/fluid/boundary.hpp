@@ -70,10 +70,6 @@ struct Boundaries {
 /// Copies planes between neighbouring slabs (and around a periodic z): `layers` ghost planes on both sides.
 void exchange_planes(const Slab& slab, Field& field, int layers);
 
-/// Adds what was written into ghost planes, columns and rows of periodic sides to their owners (spread
-/// forces).
-void accumulate_ghosts(const Slab& slab, const Boundaries& boundaries, FaceField& field);
-
 /// All ghosts of a velocity, and the normal velocity on walls and slip sides.
 void fill_velocity_ghosts(const Slab& slab, const Boundaries& boundaries, FaceField& velocity);
 

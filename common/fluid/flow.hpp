@@ -108,8 +108,6 @@ class Flow {
   const Field& pressure() const { return pressure_; }
   /// Force density on the fluid, micronewton/mm3, on the owned faces.
   FaceField& force() { return force_; }
-  /// Adds what was spread into ghost faces to the ranks (or periodic images) that own them.
-  void accumulate_force() { accumulate_ghosts(slab_, boundaries_, force_); }
   void fill_ghosts();
 
   /// Initial velocity (component d at the position of its face, mm/s) and pressure; forgets the step history.

@@ -117,31 +117,6 @@ TEST_P(Ranks, StateOfOneRankContinuesOnSeveral) {
   for (const auto& [name, array] : parts) EXPECT_LT(largest_difference(array, whole.at(name)), 1e-10) << name;
 }
 
-TEST_P(Ranks, SpreadForcesReachTheirOwners) {
-  // The same force written with ghosts: every rank adds what its slab and ghosts cover of one blob.
-  const auto total = [&](Flow& flow) {
-    const Grid& grid = flow.grid();
-    const int middle = grid.cells[2] / 2;
-    for (int k = middle - 2; k <= middle + 2; ++k) {
-      const int local = k - flow.slab().first;
-      const bool writer = middle >= flow.slab().first && middle < flow.slab().first + flow.slab().planes;
-      if (!writer) continue;
-      for (int j = -2; j < 3; ++j) flow.force()[0](3, j, local) += 1 + k + 0.1 * j;
-    }
-    flow.accumulate_force();
-    double sum = 0;
-    for (int k = 0; k < flow.slab().planes; ++k) {
-      for (int j = 0; j < grid.cells[1]; ++j)
-        sum += flow.force()[0](3, j, k) * (1 + j) * (1 + k + flow.slab().first);
-    }
-    return mpi::sum(flow.slab().comm, sum);
-  };
-  auto together = make(MPI_COMM_WORLD, GetParam());
-  auto alone = make(MPI_COMM_SELF, GetParam());
-  const double expected = total(*alone);
-  EXPECT_NEAR(total(*together), expected, 1e-12 * std::abs(expected));
-}
-
 TEST(ImplicitViscosity, GivesTheFlowOfOneRankWithinItsTolerance) {
   for (Side z : {Side::open, Side::periodic, Side::wall}) {
     const auto run = [&](MPI_Comm comm) {
