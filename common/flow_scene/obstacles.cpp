@@ -356,13 +356,22 @@ Obstacles::Load Obstacles::load_on(fluid::Flow& flow, const Frame& frame, const 
   }
   Load load{frame.to_case(flow.solids().force_on(obstacle.body)),
             frame.to_case(flow.solids().moment_on(obstacle.body, place))};
-  if (obstacle.displacement) {
-    const double h = flow.grid().h, apart = 100 * difference_s_;
-    const Vec3 acceleration =
-        (obstacle.shift(time_s + apart) - 2 * obstacle.shift(time_s) + obstacle.shift(time_s - apart)) /
-        (apart * apart);
-    const double faces = mpi::sum(flow.slab().comm, static_cast<double>(flow.solids().faces(obstacle.body)));
-    load.force += flow.parameters().density * h * h * h * faces / 3 * acceleration;
+  if (obstacle.moves()) {
+    const double apart = 100 * difference_s_;
+    const Vec3 centre = obstacle.turn_point + obstacle.shift(time_s);
+    // Where what is at x now is at another time.
+    const auto at = [&](const Vec3& x, double other_s) -> Vec3 {
+      const double turned = obstacle.angle(other_s) - obstacle.angle(time_s);
+      return obstacle.turn_point + obstacle.shift(other_s) +
+             Eigen::AngleAxisd(turned, obstacle.turn_axis) * (x - centre);
+    };
+    const auto acceleration = [&](const Vec3& solver_x) {
+      const Vec3 x = frame.to_case(solver_x);
+      return frame.to_solver((at(x, time_s + apart) - 2 * x + at(x, time_s - apart)) / (apart * apart));
+    };
+    const auto [force, moment] = flow.solids().inertia(obstacle.body, acceleration, place);
+    load.force += frame.to_case(force);
+    load.moment += frame.to_case(moment);
   }
   return load;
 }

@@ -90,6 +90,7 @@ void Flow::set_velocity(const std::function<double(int, const Vec3&)>& value) {
     }
   }
   previous_dt_ = 0;
+  solids_.forget();
   rate_.fill(0);
   if (krylov_) prepare_cells();
   apply_inflow(velocity_);
@@ -249,7 +250,7 @@ void Flow::advance(Advance step, const PredictOptions& options) {
     solids_.prepare();
     const double eta = parameters_.penalisation_s;
     implicit_viscosity_->solve(step.dt, options.penalise ? step.dt / eta : 0, velocity_, solids_, next_);
-    if (options.penalise) solids_.record(eta, velocity_, next_);
+    if (options.penalise) solids_.record(step.dt, eta, velocity_, next_);
     velocity_.swap(next_);
     return;
   }
@@ -309,6 +310,7 @@ void Flow::penalise(double dt) {
 void Flow::undo() {
   velocity_.swap(next_);
   pressure_.swap(correction_);
+  solids_.undo();
   previous_dt_ = 0;
 }
 

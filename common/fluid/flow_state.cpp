@@ -75,7 +75,9 @@ std::map<std::string, state::Array> Flow::save() const {
     krylov_->store_start(start);
     keep("pressure_start", start, 3);
   }
+  const std::vector<double> carried = solids_.carried();
   if (slab_.rank == 0) {
+    if (solids_.interpolated()) arrays["fluid/ghost_faces_carry_mm_per_s"] = state::Array::of(carried);
     arrays["fluid/previous_step_s"] = state::Array::scalar(previous_dt_);
     arrays["fluid/end_pressure_Pa"] =
         state::Array::of(std::vector<double>{end_pressure_[0], end_pressure_[1]});
@@ -100,6 +102,10 @@ void Flow::load(const state::State& state) {
   if (ends.size() != 2)
     throw InputError("{}: fluid/end_pressure_Pa has {} entries, expected 2", state.source, ends.size());
   std::copy_n(ends.begin(), 2, end_pressure_.begin());
+  if (solids_.interpolated()) {
+    const char* name = "fluid/ghost_faces_carry_mm_per_s";
+    solids_.restore_carried(state.array(name).doubles(name));
+  }
   fill_ghosts();
 }
 

@@ -290,12 +290,14 @@ void Solids::penalise(double dt, double eta, const FaceField& last, FaceField& v
   std::fill(moment_.begin(), moment_.end(), Vec3::Zero());
   const double ratio = dt / eta, keep = 1 / (1 + ratio);
   const double mass_rate = density_ * std::pow(slab_.grid.h, 3) / dt;
+  Vec3 carried = Vec3::Zero();
   for (int d = 0; d < 3; ++d) {
     double* u = velocity[d].data().data();
     double lost = 0;
     for (const Ghost& ghost : ghosts_[d]) {
       const double after = keep * (u[ghost.index] + ratio * target(ghost, last));
       lost += u[ghost.index] - after;
+      carried[d] += after;
       u[ghost.index] = after;
     }
     for (const Run& run : walls_[d]) {
@@ -315,6 +317,33 @@ void Solids::penalise(double dt, double eta, const FaceField& last, FaceField& v
       u[face.index] = after;
     }
   }
+  count_carried(dt, carried);
+}
+
+// The sum of all ranks is subtracted by the first, so that a continued run has the same bits.
+void Solids::count_carried(double dt, const Vec3& now) {
+  if (!interpolated()) return;
+  const double mass_rate = density_ * std::pow(slab_.grid.h, 3) / dt;
+  if (carried_known_) {
+    Vec3 before = carried_;
+    mpi::sum_in_place(slab_.comm, before.data(), 3);
+    force_[wall] += mass_rate * (slab_.rank == 0 ? Vec3(now - before) : now);
+  }
+  carried_before_ = carried_known_ ? carried_ : now;
+  carried_ = now;
+  carried_known_ = true;
+}
+
+std::vector<double> Solids::carried() const {
+  Vec3 all = carried_;
+  mpi::sum_in_place(slab_.comm, all.data(), 3);
+  return {carried_known_ ? 1.0 : 0.0, all[0], all[1], all[2]};
+}
+
+void Solids::restore_carried(const std::vector<double>& carried) {
+  VALSALVA_ASSERT(carried.size() == 4);
+  carried_known_ = carried[0] != 0;
+  carried_ = slab_.rank == 0 ? Vec3(carried[1], carried[2], carried[3]) : Vec3::Zero();
 }
 
 void Solids::still(FaceField& velocity, Planes within) {
@@ -336,14 +365,18 @@ void Solids::still(FaceField& velocity, Planes within) {
   }
 }
 
-void Solids::record(double eta, const FaceField& before, const FaceField& velocity) {
+void Solids::record(double dt, double eta, const FaceField& before, const FaceField& velocity) {
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   std::fill(moment_.begin(), moment_.end(), Vec3::Zero());
   const double factor = density_ * std::pow(slab_.grid.h, 3) / eta;
+  Vec3 carried = Vec3::Zero();
   for (int d = 0; d < 3; ++d) {
     const double* u = velocity[d].data().data();
     double of_wall = 0;
-    for (const Ghost& ghost : ghosts_[d]) of_wall += u[ghost.index] - target(ghost, before);
+    for (const Ghost& ghost : ghosts_[d]) {
+      of_wall += u[ghost.index] - target(ghost, before);
+      carried[d] += u[ghost.index];
+    }
     for (const Run& run : walls_[d]) {
       for (int i = 0; i < run.count; ++i) of_wall += u[run.first + i];
     }
@@ -354,6 +387,7 @@ void Solids::record(double eta, const FaceField& before, const FaceField& veloci
       moment_[face.body] += factor * slip * face.position.cross(Vec3::Unit(d));
     }
   }
+  count_carried(dt, carried);
 }
 
 Vec3 Solids::force_on(int body) const {
@@ -371,6 +405,23 @@ Vec3 Solids::moment_on(int body, const Vec3& about) const {
   }
   mpi::sum_in_place(slab_.comm, all.data(), all.size());
   return Vec3(all[3], all[4], all[5]) - about.cross(Vec3(all[0], all[1], all[2]));
+}
+
+std::array<Vec3, 2> Solids::inertia(int body, const std::function<Vec3(const Vec3&)>& acceleration,
+                                    const Vec3& about) {
+  prepare();
+  const double mass = density_ * std::pow(slab_.grid.h, 3);
+  std::array<Vec3, 2> sum{Vec3::Zero(), Vec3::Zero()};
+  for (int d = 0; d < 3; ++d) {
+    for (const Held& face : held_[d]) {
+      if (face.body != body) continue;
+      const Vec3 force = mass * acceleration(face.position)[d] * Vec3::Unit(d);
+      sum[0] += force;
+      sum[1] += (face.position - about).cross(force);
+    }
+  }
+  for (Vec3& each : sum) mpi::sum_in_place(slab_.comm, each.data(), 3);
+  return sum;
 }
 
 }  // namespace valsalva::fluid

@@ -1,4 +1,5 @@
 // Obstacles in the flow: shapes, forces, motion.
+#include <array>
 #include <cmath>
 
 #include "run_case.hpp"
@@ -167,6 +168,137 @@ of = "shaft"
   const double exact = -4 * M_PI * 1 * 1 * 4.0 / 3 * 0.4;
   std::printf("torque / exact %.4f\n", 1e6 * run.metric("shaft_z_N_mm") / exact);
   EXPECT_NEAR(1e6 * run.metric("shaft_z_N_mm") / exact, 1, 0.1);  // staircases: first order
+}
+
+namespace {
+
+std::string in_a_sleeve(const std::string& motion, double viscosity_Pa_s, double step_s,
+                        const std::string& measured) {
+  return fmt::format(R"toml(
+[fluid]
+box_mm = [-2.6, -2.6, 0, 2.6, 2.6, 0.05]
+grid_mm = 0.05
+density_g_per_mm3 = 1e-3
+viscosity_Pa_s = {}
+end_s = 0.3
+step_s = {}
+history_rows = 60
+[[boundary]]
+name = "endless"
+sides = ["z"]
+kind = "periodic"
+[[obstacle]]
+name = "shaft"
+shape = "cylinder"
+radius_mm = 1
+{}
+[[obstacle]]
+name = "sleeve"
+shape = "cylinder"
+radius_mm = 2.5
+fluid = "inside"
+[[flow_probe]]
+name = "shaft"
+quantity = "{}"
+of = "shaft"
+)toml",
+                     viscosity_Pa_s, step_s, motion, measured);
+}
+
+/// Of the last of three periods: what goes with sin(w t) and with cos(w t).
+std::array<double, 2> harmonic(FlowRun& run, const std::string& column) {
+  std::array<double, 2> sum{0, 0};
+  for (int row = 41; row <= 60; ++row) {
+    const double value = run.scene.history().at(row, column), phase = 2 * M_PI * row / 20;
+    sum[0] += value * std::sin(phase) / 10;
+    sum[1] += value * std::cos(phase) / 10;
+  }
+  return sum;
+}
+
+constexpr double omega = 20 * M_PI;
+
+}  // namespace
+
+// A shaft that swings in a sleeve of ideal fluid: -m a, m = rho pi R1^2 (R2^2 + R1^2) / (R2^2 - R1^2) a
+// length.
+TEST(FlowObstacles, AShaftThatSwingsCarriesItsAddedMass) {
+  FlowRun run(in_a_sleeve("displacement = [\"1e-3*sin(62.83185307*t)\", \"0\", \"0\"]", 1e-7, 5e-4, "force"));
+  run.to_end();
+  const double mass = 1e-3 * M_PI * 7.25 / 5.25 * 0.05, exact = 1e-6 * mass * 1e-3 * omega * omega;
+  const auto [with_sin, with_cos] = harmonic(run, "shaft_x_N");
+  std::printf("force / exact %.4f, quarter of a period off %.4f\n", with_sin / exact, with_cos / exact);
+  EXPECT_NEAR(with_sin / exact, 1, 0.1);
+  EXPECT_NEAR(with_cos / exact, 0, 0.05);
+}
+
+// A shaft that turns to and fro (Stokes): torque -2 pi mu R^2 (k R K0(k R) / K1(k R) + 2) times the rate, a
+// length, k = (1 + i) / delta with delta = sqrt(2 nu / w) = 0.3 R; the sleeve is five delta away.
+TEST(FlowObstacles, AShaftThatTurnsToAndFro) {
+  const double viscosity = 1e-3 * 0.3 * 0.3 * omega / 2, swing = 0.05;
+  FlowRun run(in_a_sleeve(fmt::format("turn_deg = \"{}*sin(62.83185307*t)\"", swing * 180 / M_PI), viscosity,
+                          5e-5, "moment"));
+  run.to_end();
+  const double unit = 1e-6 * 2 * M_PI * viscosity * swing * omega * 0.05;
+  const auto [with_sin, with_cos] = harmonic(run, "shaft_z_N_mm");
+  std::printf("torque: %.3f (exact -4.887) with the rate, %.3f (3.291) with the angle\n", with_cos / unit,
+              with_sin / unit);
+  EXPECT_NEAR(with_cos / unit, -4.887, 0.1 * 5.89);
+  EXPECT_NEAR(with_sin / unit, 3.291, 0.1 * 5.89);
+}
+
+// Fluid swings in a tube whose wall is interpolated: what it gains in momentum is what drives it less the
+// force on the wall, in every step. What ghost faces carry is neither.
+TEST(FlowObstacles, MomentumIsKeptBesideAnInterpolatedWall) {
+  constexpr double dt = 1e-3, length = 0.8, density = 1e-3;
+  constexpr int steps = 40;
+  FlowRun run(fmt::format(R"toml(
+[fluid]
+box_mm = [0, -1.4, -1.4, {}, 1.4, 1.4]
+grid_mm = 0.2
+density_g_per_mm3 = {}
+viscosity_Pa_s = 4e-3
+wall = "interpolated"
+end_s = {}
+step_s = {}
+history_rows = {}
+body_force_Pa_per_mm = ["2*cos(200*t)", "0", "0"]
+[[boundary]]
+name = "endless"
+sides = ["x"]
+kind = "periodic"
+[[obstacle]]
+name = "tube"
+shape = "cylinder"
+axis = [1, 0, 0]
+radius_mm = 1.03
+fluid = "inside"
+[[flow_probe]]
+name = "q"
+quantity = "flow"
+axis = "x"
+at_mm = 0.4
+[[flow_probe]]
+name = "tube"
+quantity = "force"
+of = "tube"
+component = "x"
+)toml",
+                          length, density, steps * dt, dt, steps));
+  run.to_end();
+  const auto& rows = run.scene.history();
+  const auto gained = [&](int row) {  // micronewton
+    return density * length * 1e3 * (rows.at(row, "q_mL_per_s") - rows.at(row - 1, "q_mL_per_s")) / dt;
+  };
+  const auto drive = [&](int row) { return std::cos(200 * (row - 0.5) * dt); };
+  const double volume = gained(1) / drive(1);  // from rest: no friction yet
+  double friction = 0;
+  for (int row = 2; row <= steps; ++row) {
+    const double force = 1e6 * rows.at(row, "tube_N");
+    friction = std::max(friction, std::abs(force));
+    EXPECT_NEAR(gained(row), volume * drive(row) - force, 1e-6 * volume) << row;
+  }
+  EXPECT_GT(friction, 0.2 * volume);
 }
 
 // The same ball from an analytic shape, a level set and a file, alone and as union and difference.
