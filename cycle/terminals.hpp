@@ -5,7 +5,7 @@
 // with a Windkessel starts from the periodic beat of the 0D loop with an ideal valve.
 //
 // An end answers the flow of the step's start, P(Q), as long as the slope Z = dP/dQ of its answer is small
-// against the domain's inertance, Z dt / L <= 1/8; a larger one would make flow and pressure swing against
+// against the domain's inertance, Z dt / L <= 1/16; a larger one would make flow and pressure swing against
 // each other, and grow (from some mmHg s/mL in a valve at draft). Beyond, its pressure is found together with
 // the flow of the step's end (coupling/implicit_ends.hpp): any slope.
 #pragma once

@@ -56,6 +56,19 @@ class Extremes:
                           "nan": "yes" if any(row["nan"] == "yes" for row in rows) else "no"})
         return found
 
+    def take_others(self, path):
+        """What the table there has of extremes that were not run now, in its place."""
+        if not path.exists():
+            return
+        mine = {}
+        for row in self.rows:
+            mine.setdefault(row["extreme"], []).append(row)
+        before = {}
+        for row in read(path)[0]:
+            exit_code = int(row["exit"]) if row["exit"].isdigit() else row["exit"]
+            before.setdefault(row["extreme"], []).append(row | {"exit": exit_code})
+        self.rows = [row for extreme in {**before, **mine} for row in mine.get(extreme, before.get(extreme))]
+
     def write(self, out, source):
         """Both tables of this part to `out`, and the tables of all parts to runs/extremes."""
         runs.write_csv(out / f"{self.part}-extremes.csv", self.rows, source)

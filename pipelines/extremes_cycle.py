@@ -314,6 +314,8 @@ def main():
         STORED_ONLY = bool(options.only) and part.__name__ not in options.only
         print(f"{part.__name__} ({time.monotonic() - start:.0f} s since the start)", flush=True)
         part()
+    if options.only:
+        STUDY.take_others(options.out / "cycle-extremes.csv")
     STUDY.write(options.out, source)
     print(f"all: {time.monotonic() - start:.0f} s")
 

@@ -18,7 +18,7 @@ namespace valsalva::coupling {
 using Answer = std::function<double(double outflow)>;  ///< Pa at the end of the step, of mm3/s
 
 /// Of dP/dQ dt S: up to here the answer to the flow of the step before will do.
-constexpr double explicit_until = 0.125;
+constexpr double explicit_until = 0.0625;
 
 /// The p_i above. taken: dt S, mm3/s per Pa.
 std::vector<double> meet(const Eigen::MatrixXd& taken, const std::vector<double>& outflow,
