@@ -15,6 +15,8 @@ namespace valsalva::cycle {
 class Simulation {
  public:
   Simulation(MPI_Comm comm, const Inputs& in, const Parameters& p);
+  Simulation(const Simulation&) = delete;  // the flow calls back
+  Simulation& operator=(const Simulation&) = delete;
 
   double time_s() const { return time_s_; }
   long steps() const { return steps_; }
