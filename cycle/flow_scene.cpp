@@ -96,7 +96,8 @@ void run_flow_scene(StageContext& context) {
     log::warn("fluid.step_s is {} s; fluid.cfl and the viscosity allow {:.3g} s: the run may become unstable",
               scene.given_step_s(), scene.stable_s());
   record_files(context);
-  if (const auto before = state::resume(context)) {
+  if (const auto before =
+          state::resume(context, {"fluid.end_s", "fluid.history_rows", "fluid.average_from_s"})) {
     scene.load(*before);
     log::info("continued from step {} at t = {:.6g} s", scene.steps(), scene.time_s());
   } else {

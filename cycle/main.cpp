@@ -84,7 +84,7 @@ void run(StageContext& context) {
                         : read_inputs(context.parent_state(p.device ? "deploy" : "mesher"), p);
   Simulation simulation(context.comm, in, p);
   say_scene(in, p, simulation);
-  if (const auto before = state::resume(context)) {
+  if (const auto before = state::resume(context, {"cycle.beats", "cycle.duration_s"})) {
     simulation.load(*before);
     log::info("continued from step {} at t = {:.6f} s", simulation.steps(), simulation.time_s());
   }

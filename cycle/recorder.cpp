@@ -268,7 +268,9 @@ std::map<std::string, Array> Recorder::save() const {
 void Recorder::load(const state::State& state) {
   if (state.has_array("cycle/history"))
     history_.restore(state.array("cycle/history").doubles("cycle/history"));
-  if (state.has_array("frames/time_s")) {
+  // Of a run with more beats than before, frames are those of the new last one.
+  if (state.has_array("frames/time_s") &&
+      beat_of(state.array("frames/time_s").doubles("frames/time_s").at(0)) == p_.beats) {
     frame_time_s_ = state.array("frames/time_s").doubles("frames/time_s");
     frame_velocity_ =
         unstacked(state.array("frames/slice_velocity_mm_per_s"), "frames/slice_velocity_mm_per_s");

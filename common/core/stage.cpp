@@ -125,9 +125,10 @@ void run_stage(const Stage& stage, const Schema& schema, const CommandLine& line
   RunFolder run(folder);
   MPI_Barrier(comm);
   if (!line.resume) run.disregard_present_states();
-  StageContext context{scene,      std::move(run), new_summary(stage, scene, comm),
-                       line.from,  line.resume,    line.steps,
-                       line.quiet, comm,           first && !line.quiet};
+  StageContext context{scene,       std::move(run), new_summary(stage, scene, comm),
+                       line.from,   line.resume,    line.steps,
+                       line.quiet,  comm,           first && !line.quiet,
+                       stage.tables};
   try {
     run_and_summarise(stage, context);
   } catch (const InputError&) {

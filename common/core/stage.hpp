@@ -32,7 +32,8 @@ struct StageContext {
   std::optional<long> steps;                  ///< --steps: stop after so many, with a state
   bool quiet = false;
   MPI_Comm comm = MPI_COMM_WORLD;
-  bool speaks = true;  ///< rank 0 and not quiet
+  bool speaks = true;            ///< rank 0 and not quiet
+  std::set<std::string> tables;  ///< of the case file, on which this stage depends
 
   /// The parent's newest state: --from where given, else runs/<case>/<stage>/ beside this stage's own folder.
   /// Its digest is recorded in summary.inputs. InputError when there is none (it says which command makes

@@ -389,7 +389,7 @@ std::map<std::string, state::Array> FlowScene::save_run() const {
   auto arrays = bodies_ ? bodies_->system().save() : flow_->save();
   if (flow_->slab().rank != 0) return arrays;
   arrays["scene/march"] = state::Array::of(
-      std::vector<double>{time_s_, static_cast<double>(steps_), static_cast<double>(row_), step_s_, speed_});
+      std::vector<double>{time_s_, static_cast<double>(steps_), average_from_s_, step_s_, speed_});
   arrays["scene/history"] = state::Array::of(history_.values());
   arrays["scene/outlets"] = state::Array::of(sides_.save());
   arrays["scene/means"] = state::Array::of(probes_.save());
@@ -403,12 +403,18 @@ void FlowScene::load_run(const state::State& state) {
     throw InputError("{}: scene/march has {} entries, expected 5", state.source, march.size());
   time_s_ = march[0];
   steps_ = static_cast<long>(march[1]);
-  row_ = static_cast<long>(march[2]);
+  // Rows and what is averaged may be others than before.
+  row_ = static_cast<long>(std::floor(time_s_ / end_s_ * static_cast<double>(rows_) + 1e-9));
   step_s_ = march[3];
   speed_ = march[4];
   history_.restore(state.array("scene/history").doubles("scene/history"));
   sides_.restore(state.array("scene/outlets").doubles("scene/outlets"));
-  probes_.restore(state.array("scene/means").doubles("scene/means"));
+  if (march[2] == average_from_s_) {
+    probes_.restore(state.array("scene/means").doubles("scene/means"));
+  } else if (time_s_ > average_from_s_) {
+    log::warn("profiles are averaged from {} s on, not from {} s: the state has averages from {} s on",
+              time_s_, average_from_s_, march[2]);
+  }
   if (obstacles_.move()) obstacles_.update(*flow_, frame(), time_s_);
   sides_.set(*flow_, time_s_, time_s_);
   if (bodies_) {

@@ -1,5 +1,12 @@
 #include "state/checkpoint.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <sstream>
+
 #include "core/errors.hpp"
 #include "core/log.hpp"
 #include "core/provenance.hpp"
@@ -49,16 +56,56 @@ void stop(const StageContext& context, const State& state) {
                     path.string());
 }
 
-std::optional<State> resume(const StageContext& context) {
+namespace {
+
+/// Keys of the stage's tables: value, of lines "key = value".
+std::map<std::string, std::string> values_of(const std::string& text, const std::set<std::string>& tables) {
+  std::map<std::string, std::string> values;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find(" = ");
+    if (equals != std::string::npos && tables.count(line.substr(0, line.find_first_of(".["))))
+      values[line.substr(0, equals)] = line.substr(equals + 3);
+  }
+  return values;
+}
+
+/// "key was a, is b" of all keys that differ but those that may.
+std::vector<std::string> differences(const std::string& before, const std::string& now,
+                                     const std::set<std::string>& tables,
+                                     const std::set<std::string>& may_differ) {
+  std::map<std::string, std::array<std::string, 2>> both;
+  for (const auto& [key, value] : values_of(before, tables)) both[key][0] = value;
+  for (const auto& [key, value] : values_of(now, tables)) both[key][1] = value;
+  const auto said = [](const std::string& value) { return value.empty() ? std::string("absent") : value; };
+  std::vector<std::string> found;
+  for (const auto& [key, values] : both)
+    if (values[0] != values[1] && !may_differ.count(key))
+      found.push_back(fmt::format("{} was {}, is {}", key, said(values[0]), said(values[1])));
+  return found;
+}
+
+}  // namespace
+
+std::optional<State> resume(const StageContext& context, const std::set<std::string>& may_differ) {
   if (!context.resume) return std::nullopt;
   const auto newest = context.run.latest_state();
   if (!newest)
     throw InputError("--resume: {} holds no state to continue from; run without --resume",
                      context.run.path().string());
   State state = read(*newest, context.summary.stage);
-  if (state.parameters_sha256 != context.summary.parameters_sha256)
-    throw InputError("--resume: {} was computed with other parameters; run without --resume, or restore them",
-                     newest->string());
+  if (state.parameters_sha256 != context.summary.parameters_sha256) {
+    const std::vector<std::string> found =
+        differences(state.parameters, context.scene.effective(), context.tables, may_differ);
+    const std::size_t shown = std::min<std::size_t>(found.size(), 5);
+    const bool known = state.parameters.find(" = ") != std::string::npos;
+    if (!found.empty() || !known)
+      throw InputError(
+          "--resume: {} was computed with other parameters{}{}{}; run without --resume, or restore them",
+          newest->string(), found.empty() ? "" : ": ",
+          fmt::join(found.begin(), found.begin() + static_cast<long>(shown), "; "),
+          found.size() > shown ? fmt::format(" and {} more", found.size() - shown) : std::string());
+  }
   log::info("continuing from {} (step {}, time {:.6g} s)", newest->string(), state.step, state.time_s);
   return state;
 }

@@ -36,8 +36,8 @@ void drop_kept(const StageContext& context);
 [[noreturn]] void stop(const StageContext& context, const State& state);
 
 /// With --resume: the stage's own newest state. InputError when there is none, or when it was computed with
-/// other parameters. Without --resume: nothing.
-std::optional<State> resume(const StageContext& context);
+/// other values of parameters than those of `may_differ`, which it names. Without --resume: nothing.
+std::optional<State> resume(const StageContext& context, const std::set<std::string>& may_differ = {});
 
 /// Says when a checkpoint is due by wall clock; rank 0 decides for all. What is computed does not depend on
 /// it.

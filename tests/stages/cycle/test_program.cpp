@@ -140,6 +140,14 @@ TEST_F(Cycle, StopsAfterStepsAndContinuesBitwise) {
   EXPECT_FALSE(a.final);
 }
 
+TEST_F(Cycle, ContinuesToALaterEndButNotWithOtherParameters) {
+  ASSERT_EQ(run("longer", "--steps 20 --set cycle.duration_s=0.01").code, 0);
+  const Outcome other = run("longer", "--resume --steps 1 --set cycle.step_safety=0.5");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.text.find("cycle.step_safety was 0.85, is 0.5"), std::string::npos) << other.text;
+  EXPECT_EQ(run("longer", "--resume --steps 1 --set cycle.duration_s=0.02").code, 0);
+}
+
 TEST_F(Cycle, TwoRanksGiveTheSameHistory) {
   ASSERT_EQ(run("one", "--steps 100").code, 0);
   const Outcome two = run("two", "--steps 100", 2);
