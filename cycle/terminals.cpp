@@ -14,7 +14,6 @@ using namespace circulation;
 // An open valve of about 1.7 cm2: only the start of the beat depends on it.
 constexpr double ideal_valve_resistance = 0.02 * units::resistance_per_mmHg_s_per_mL;
 
-
 double smooth(double s) {
   s = std::clamp(s, 0.0, 1.0);
   return s * s * (3 - 2 * s);

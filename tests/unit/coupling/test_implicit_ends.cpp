@@ -55,8 +55,7 @@ struct Vessel {
             if (x[0] < 3 || x[0] > 10 || (x[0] > 6 && x[2] > 5 && x[2] < 9))
               flow->solids().claim(wall, d, i, j, k);
           }
-    if (cells)
-      far = flow->add_opening({"far", Vec3(6.5, 4, 13), Vec3(0.2, 0, 1).normalized(), 40, {}});
+    if (cells) far = flow->add_opening({"far", Vec3(6.5, 4, 13), Vec3(0.2, 0, 1).normalized(), 40, {}});
     flow->set_velocity([](int d, const Vec3& x) { return d == 2 ? 10 + x[0] : 0.3 * x[1]; });
     set(400, 100);
   }
@@ -101,11 +100,11 @@ TEST_P(Raised, PressuresAreAsThoughKnownBefore) {
     for (int j = 0; j < 8; ++j)
       for (int i = 0; i < 12; ++i) {
         for (int d = 0; d < 3; ++d)
-          velocity = std::max(velocity, std::abs(after.flow->velocity()[d](i, j, k) -
-                                                 before.flow->velocity()[d](i, j, k)));
+          velocity = std::max(
+              velocity, std::abs(after.flow->velocity()[d](i, j, k) - before.flow->velocity()[d](i, j, k)));
         if (after.flow->solids().owner(3, i, j, k) == 0)
-          pressure = std::max(
-              pressure, std::abs(after.flow->pressure()(i, j, k) - before.flow->pressure()(i, j, k)));
+          pressure = std::max(pressure,
+                              std::abs(after.flow->pressure()(i, j, k) - before.flow->pressure()(i, j, k)));
       }
   EXPECT_LT(velocity, 1e-7 * report.max_speed);
   EXPECT_LT(pressure, 1e-7 * 400);
@@ -123,7 +122,8 @@ TEST_P(Raised, AResistanceOfAnySizeObeysOhm) {
     for (int n = 0; n < 300; ++n) {
       largest = std::max(largest, vessel.flow->step(1e-4).max_speed);
       const double outflow = ends.outflow(0);
-      EXPECT_NEAR((vessel.flow->known_pressure(vessel.far) - 100) / resistance, outflow, 1e-6 * (1e3 + outflow));
+      EXPECT_NEAR((vessel.flow->known_pressure(vessel.far) - 100) / resistance, outflow,
+                  1e-6 * (1e3 + outflow));
     }
     if (resistance >= 1) EXPECT_NEAR(ends.outflow(0), 300 / resistance, 0.02 * 300 / resistance + 1e-6);
     EXPECT_LT(largest, 2500) << resistance;

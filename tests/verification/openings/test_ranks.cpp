@@ -11,8 +11,9 @@ void advance(Flow& flow, int from, int to) {
   for (int step = from; step < to; ++step) {
     flow.openings().set_pressure(0, 300 * std::sin(0.15 * step));
     flow.openings().set_pressure(1, 7);
-    flow.after_projection(
-        [&](double dt, const StepReport&) { return flow.raise({{1, 40 * std::cos(0.2 * step)}}, dt); });
+    flow.after_projection([&](double dt, const StepReport&) {
+      return flow.raise({{1, 40 * std::cos(0.2 * step)}}, dt);
+    });
     flow.step(1e-4 * (1 + 0.3 * std::sin(step)));
   }
 }
