@@ -133,7 +133,8 @@ void Solids::find_ghosts(const Distance& distance) {
       if (!(size > 0.1)) return false;
       const Vec3 n = g / size;
       const double s = std::max(0.0, distance(x) / size);
-      for (double delta = h; delta < 2.4 * h; delta += 0.25 * h) {
+      for (int quarters = 4; quarters < 10; ++quarters) {
+        const double delta = 0.25 * quarters * h;
         const Vec3 to = x - (s + delta) * n;
         if (!read_at(0, to, k, ghost) || !read_at(1, to, k, ghost) || !read_at(2, to, k, ghost)) continue;
         const double ratio = s / delta;

@@ -21,14 +21,15 @@ State begin(const StageContext& context, double time_s, std::int64_t step) {
   state.version = version();
   state.parameters = context.scene.effective();
   state.parameters_sha256 = context.summary.parameters_sha256;
-  for (const auto& [path, digest] : context.summary.inputs) state.parents.push_back(path + " " + digest);
+  for (const auto& [path, digest] : context.summary.inputs)
+    state.parents.push_back(fmt::format("{} {}", path, digest));
   state.time_s = time_s;
   state.step = step;
   return state;
 }
 
 std::filesystem::path save(const StageContext& context, const State& state) {
-  const std::filesystem::path path = context.run.state_path(state.step);
+  std::filesystem::path path = context.run.state_path(state.step);
   if (mpi::rank(context.comm) == 0) {
     write(path, state);
     context.run.prune();
