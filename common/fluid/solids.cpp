@@ -246,14 +246,6 @@ void Solids::set_motion(int body, const RigidMotion& motion) {
   motion_[body] = motion;
 }
 
-long Solids::faces(int body) const {
-  long count = 0;
-  for (int d = 0; d < 3; ++d) {
-    count += std::count(owner_[d].begin(), owner_[d].end(), static_cast<std::uint8_t>(1 + body));
-  }
-  return count;
-}
-
 void Solids::list_faces() {
   const Grid& grid = slab_.grid;
   const Field shape(slab_);

@@ -89,9 +89,6 @@ class Solids {
   /// 0: fluid; otherwise 1 + number of the body. d = 3: the cell's centre. Owned planes only, k local.
   std::uint8_t owner(int d, int i, int j, int k) const { return owner_[d][index(i, j, k)]; }
   const std::uint8_t* owner_row(int d, int j, int k) const { return owner_[d].data() + index(0, j, k); }
-  /// Faces of this rank that belong to the body, all components.
-  long faces(int body) const;
-
   /// Penalises all owned faces with ratio = dt/eta, and keeps the momentum taken from the fluid for force_on.
   /// last: the velocity at the end of the last step, with valid ghosts (read for interpolated walls only).
   void penalise(double dt, double eta, const FaceField& last, FaceField& velocity);

@@ -125,7 +125,9 @@ TEST_P(Raised, AResistanceOfAnySizeObeysOhm) {
       EXPECT_NEAR((vessel.flow->known_pressure(vessel.far) - 100) / resistance, outflow,
                   1e-6 * (1e3 + outflow));
     }
-    if (resistance >= 1) EXPECT_NEAR(ends.outflow(0), 300 / resistance, 0.02 * 300 / resistance + 1e-6);
+    if (resistance >= 1) {
+      EXPECT_NEAR(ends.outflow(0), 300 / resistance, 0.02 * 300 / resistance + 1e-6);
+    }
     EXPECT_LT(largest, 2500) << resistance;
   }
 }
