@@ -134,42 +134,6 @@ TEST(FlowObstacles, CylinderOfTheLibraryDragsAsPublished) {
   EXPECT_NEAR(cd / *drag, 1, 0.05);
 }
 
-// A shaft that turns in a sleeve (Taylor and Couette, below the first instability): torque per length
-// 4 pi mu w R1^2 R2^2 / (R2^2 - R1^2).
-TEST(FlowObstacles, AShaftThatTurnsInASleeve) {
-  FlowRun run(R"toml(
-[fluid]
-box_mm = [-2.2, -2.2, 0, 2.2, 2.2, 0]
-grid_mm = 0.1
-density_g_per_mm3 = 0.1
-viscosity_Pa_s = 1
-end_s = 0.15
-history_rows = 1
-[[boundary]]
-name = "endless"
-sides = ["z"]
-kind = "periodic"
-[[obstacle]]
-name = "shaft"
-shape = "cylinder"
-radius_mm = 1
-turn_deg = "t*180/pi"
-[[obstacle]]
-name = "sleeve"
-shape = "cylinder"
-radius_mm = 2
-fluid = "inside"
-[[flow_probe]]
-name = "shaft"
-quantity = "moment"
-of = "shaft"
-)toml");
-  run.to_end();
-  const double exact = -4 * M_PI * 1 * 1 * 4.0 / 3 * 0.4;
-  std::printf("torque / exact %.4f\n", 1e6 * run.metric("shaft_z_N_mm") / exact);
-  EXPECT_NEAR(1e6 * run.metric("shaft_z_N_mm") / exact, 1, 0.1);  // staircases: first order
-}
-
 namespace {
 
 std::string in_a_sleeve(const std::string& motion, double viscosity_Pa_s, double step_s,
@@ -219,6 +183,19 @@ std::array<double, 2> harmonic(FlowRun& run, const std::string& column) {
 constexpr double omega = 20 * M_PI;
 
 }  // namespace
+
+// A shaft that turns in a sleeve (Taylor and Couette, below the first instability): torque per length
+// 4 pi mu w R1^2 R2^2 / (R2^2 - R1^2).
+TEST(FlowObstacles, AShaftThatTurnsInASleeve) {
+  FlowRun run(
+      in_a_sleeve("turn_deg = \"t*180/pi\"", 1, 0, "moment"),
+      {"fluid.box_mm=[-2.2, -2.2, 0, 2.2, 2.2, 0.1]", "fluid.grid_mm=0.1", "fluid.density_g_per_mm3=0.1",
+       "fluid.end_s=0.15", "fluid.history_rows=1", "obstacle.sleeve.radius_mm=2"});
+  run.to_end();
+  const double exact = -4 * M_PI * 1 * 1 * 4.0 / 3 * 0.1;
+  std::printf("torque / exact %.4f\n", 1e6 * run.metric("shaft_z_N_mm") / exact);
+  EXPECT_NEAR(1e6 * run.metric("shaft_z_N_mm") / exact, 1, 0.1);  // staircases: first order
+}
 
 // A shaft that swings in a sleeve of ideal fluid: -m a, m = rho pi R1^2 (R2^2 + R1^2) / (R2^2 - R1^2) a
 // length.
