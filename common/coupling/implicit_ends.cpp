@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/errors.hpp"
 #include "core/mpi.hpp"
 
 namespace valsalva::coupling {
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double probe = 1000;  // mm3/s
 constexpr int most_iterations = 50;
-constexpr double close = 1e-12;  // of the pressures
+constexpr double close = 1e-12, close_enough = 1e-6;  // of the pressures
 
 }  // namespace
 
@@ -46,6 +47,15 @@ std::vector<double> meet(const Eigen::MatrixXd& taken, const std::vector<double>
     known = next;
     flow = free - taken * (known - before);
     if (change <= close * known.lpNorm<Eigen::Infinity>()) break;
+    // Round-off is that of the pressures that would stop the flows.
+    const double size = std::max(known.lpNorm<Eigen::Infinity>(), before.lpNorm<Eigen::Infinity>()) +
+                        free.cwiseQuotient(taken.diagonal().cwiseMax(1e-300)).lpNorm<Eigen::Infinity>();
+    if (iteration + 1 == most_iterations && !(change <= close_enough * size))
+      throw NumericalFailure(
+          "coupling: the models behind the ends and the flow found no common pressure in {} iterations, "
+          "which "
+          "still changes by {:.3g} Pa. Use a smaller time step",
+          most_iterations, change);
   }
   return {known.data(), known.data() + n};
 }

@@ -4,7 +4,8 @@
 //   Q_i = Q*_i - dt sum_j S_ij (p_j - p*_j),   p_i = P_i(Q_i)
 // S_ij: what a rise at j takes from the outflow of i (fluid::Flow::add_response), P_i: the model's answer
 // over the step. Newton's iteration; then p - p* is added to the step (Flow::raise). Stable for any slope
-// dP/dQ >= 0, where the answer to the flow of the step before is stable only for dP/dQ dt S below 1/2 or so.
+// dP/dQ >= 0. The answer to the flow of the step before is stable for dP/dQ dt S below 1/2 or so in front of
+// a column of fluid; in front of a beating valve a Windkessel swung at 0.09 already.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +21,7 @@ using Answer = std::function<double(double outflow)>;  ///< Pa at the end of the
 /// Of dP/dQ dt S: up to here the answer to the flow of the step before will do.
 constexpr double explicit_until = 0.0625;
 
-/// The p_i above. taken: dt S, mm3/s per Pa.
+/// The p_i above. taken: dt S, mm3/s per Pa. NumericalFailure when there are none.
 std::vector<double> meet(const Eigen::MatrixXd& taken, const std::vector<double>& outflow,
                          const std::vector<double>& pressure, const std::vector<Answer>& answers);
 

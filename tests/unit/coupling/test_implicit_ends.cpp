@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/errors.hpp"
 #include "coupling/implicit_ends.hpp"
 
 namespace valsalva::coupling {
@@ -32,6 +33,11 @@ TEST(Meet, ADiodeOnEitherSideOfItsKink) {
     const double q = outflow - 40 * (p - 80);
     EXPECT_NEAR(p, diode(q), 1e-8 * std::abs(diode(q))) << outflow;
   }
+}
+
+TEST(Meet, AModelWithoutAnAnswerIsAnAlarm) {
+  const auto none = [](double) { return std::nan(""); };
+  EXPECT_THROW(meet(Eigen::MatrixXd::Constant(1, 1, 40), {1e4}, {80}, {none}), NumericalFailure);
 }
 
 // A vessel with a ledge in it, so that nothing is uniform; pressure known at both ends of the box, or at one
