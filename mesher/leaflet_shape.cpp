@@ -49,8 +49,9 @@ LeafletShape::LeafletShape(const Root& root, const LeafletProportions& p, double
 
   const double slack = 1 + p.free_edge_excess;
   const double coaptation = p.coaptation_height_factor * d;
-  sizes_.free_edge_mm = std::max(p.free_edge_factor * d, 2 * slack * commissure_radius_);
-  const double straight = 0.5 * sizes_.free_edge_mm / slack;
+  const double closed_edge = std::max(p.free_edge_factor * d, 2 * slack * commissure_radius_);
+  sizes_.free_edge_mm = closed_edge / p.closed_stretch;
+  const double straight = 0.5 * closed_edge / slack;
   const double edge_z =
       height - std::sqrt(std::max(0.0, straight * straight - commissure_radius_ * commissure_radius_));
   const double contact_z = std::max(0.0, edge_z - coaptation);

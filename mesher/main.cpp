@@ -29,6 +29,16 @@ LumenOptions lumen_options(const Case& scene) {
           static_cast<int>(scene.integer("mesh.wall_layers")), scene.real("mesh.max_hole_perimeter_mm")};
 }
 
+/// The published lengths are of casts under pressure; leaflets as stiff as stenotic ones keep theirs.
+double closed_stretch(const Case& scene) {
+  const double given = scene.real("native.closed_stretch");
+  if (given == 0) return scene.real("native.stenosis_factor") > 10 ? 1 : 1.05;
+  if (given < 1)
+    throw InputError("{}: native.closed_stretch = {} is below 1; expected 0 or a number in [1, 1.3]",
+                     scene.file().string(), given);
+  return given;
+}
+
 LeafletProportions proportions_of(const Case& scene, const AnatomyState& anatomy) {
   LeafletProportions p;
   p.annulus_diameter_mm = anatomy.annulus_diameter_mm;
@@ -37,6 +47,7 @@ LeafletProportions proportions_of(const Case& scene, const AnatomyState& anatomy
   p.free_edge_factor = scene.real("native.free_edge_factor");
   p.coaptation_height_factor = scene.real("native.coaptation_height_factor");
   p.free_edge_excess = scene.real("native.free_edge_excess");
+  p.closed_stretch = closed_stretch(scene);
   p.free_edge_peak_factor = scene.real("native.free_edge_peak_factor");
   p.commissure_gap_mm = scene.real("native.commissure_gap_mm");
   p.attachment_inset_mm = scene.real("native.attachment_inset_mm");
@@ -206,5 +217,5 @@ int main(int argc, char** argv) {
                      {"mesh", "native"},
                      run,
                      estimate,
-                     {}});
+                     [](const Case& scene) { closed_stretch(scene); }});
 }

@@ -7,6 +7,7 @@
 //   ImmersedStructure  any System with its force terms: solids, Kirchhoff-Love shells, beams, ties, loads
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -24,6 +25,11 @@ struct EdgeStretch {
 
 /// Share of the step by which forces run ahead of the positions: what it damps and costs is in stability.hpp.
 inline constexpr double step_lead = 0.25;
+/// What leaflets need of it at a CFL number: at rest little, which allows longer steps.
+inline double lead_at(double cfl, double least, double most) {
+  return std::min(most, least + 2 * cfl);
+}
+inline constexpr double least_step_lead = 0.05;
 
 /// Of fibres at the strains of a closed leaflet.
 inline constexpr double stiffening_per_strain = 100;
@@ -49,10 +55,13 @@ class ImmersedBody {
   virtual std::vector<double> own_masses() const { return {}; }
 
   /// Before the forces of a step of (at most) dt: history. last_velocity: of the unknowns in the step before.
-  virtual void begin_step(double /*dt_s*/, const Points& /*last_velocity*/) {}
-  /// a: forces are those of the shape that lies a dt ahead along last_velocity. Above 0 the limit of the step
-  /// counts the fluid's incompressibility (stability.hpp).
+  /// lead: forces are those of the shape that lies lead dt ahead along last_velocity.
+  virtual void begin_step(double dt_s, const Points& last_velocity, double lead) = 0;
+  /// The largest lead, where the flow is fast. Above 0 the limit of the step counts the fluid's
+  /// incompressibility (stability.hpp).
   virtual double lead() const = 0;
+  /// That in a fluid at rest.
+  virtual double least_lead() const { return lead(); }
   /// Force (moment) on every unknown, uN (uN mm); zero at held ones (collective).
   virtual void forces(Points& out) = 0;
   /// The tangent at the present shape; then out = K direction, of all unknowns (collective). For the

@@ -104,7 +104,11 @@ void ImmersedFlow::iterate(int iterations) {
 }
 
 double ImmersedFlow::critical_step() const {
-  return power_.critical_step() / std::sqrt(1 + 2 * body_->lead());
+  return power_.critical_step() / std::sqrt(1 + 2 * lead());
+}
+
+double ImmersedFlow::lead() const {
+  return lead_at(max_speed_ * last_dt_ / flow_.grid().h, body_->least_lead(), body_->lead());
 }
 
 double ImmersedFlow::plan() {
@@ -150,7 +154,7 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
     forced_ = body_ ? transfer_.planes() : fluid::Planes{0, 0};
   }
   if (body_) {
-    body_->begin_step(done.dt_s, last_velocity_);
+    body_->begin_step(done.dt_s, last_velocity_, lead());
     body_->forces(force_);
     spread(force_, flow_.force());
   }

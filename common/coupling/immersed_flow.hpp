@@ -82,6 +82,8 @@ class ImmersedFlow {
  private:
   void probe();
   void iterate(int iterations);
+  /// Of the present step: by the last one's flow.
+  double lead() const;
   double critical_step() const;
   double plan();
   void locate();

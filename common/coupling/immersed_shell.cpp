@@ -63,10 +63,10 @@ void ImmersedShell::moved() {
   stand_off(standoff_, x_, normal, *pairs_, coupled_);
 }
 
-void ImmersedShell::begin_step(double dt, const Points& last_velocity) {
+void ImmersedShell::begin_step(double dt, const Points& last_velocity, double lead) {
   ahead_ = x_;
   for (std::size_t a = 0; a < x_.size(); ++a)
-    if (!clamped_[a]) ahead_[a] += lead() * dt * last_velocity[a];
+    if (!clamped_[a]) ahead_[a] += lead * dt * last_velocity[a];
 }
 
 void ImmersedShell::forces(Points& out) {

@@ -34,8 +34,9 @@ class ImmersedShell : public ImmersedBody {
   bool clamped(std::size_t node) const { return clamped_[node] != 0; }
 
   /// Elastic force and repulsion on every node, uN; zero at clamped nodes (collective).
-  void begin_step(double dt_s, const Points& last_velocity) override;
+  void begin_step(double dt_s, const Points& last_velocity, double lead) override;
   double lead() const override { return step_lead; }
+  double least_lead() const override { return least_step_lead; }
   void forces(Points& out) override;
   /// Force of the shell on what holds its clamped nodes, uN, at the last forces().
   const Vec3& pull_on_clamps() const { return pull_; }

@@ -147,10 +147,10 @@ double ImmersedStructure::term_forces(const Configuration& at, Forces& out) cons
   return energy;
 }
 
-void ImmersedStructure::begin_step(double dt_s, const Points& last_velocity) {
+void ImmersedStructure::begin_step(double dt_s, const Points& last_velocity, double lead) {
   for (const auto& term : terms_) term->begin_step(system_->state, dt_s);
   ahead_ = system_->state;
-  for (std::size_t a = 0; a < ahead_.x.size(); ++a) ahead_.x[a] += lead() * dt_s * last_velocity[a];
+  for (std::size_t a = 0; a < ahead_.x.size(); ++a) ahead_.x[a] += lead * dt_s * last_velocity[a];
 }
 
 Vec3 ImmersedStructure::tie_force(std::size_t twin) const {

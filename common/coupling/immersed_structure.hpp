@@ -76,7 +76,7 @@ class ImmersedStructure : public ImmersedBody {
   const Sampling* sampling() const override { return sampling_ ? &*sampling_ : nullptr; }
   std::size_t unknowns() const override { return rotations_begin() + system_->rotational_nodes(); }
   std::vector<double> own_masses() const override;
-  void begin_step(double dt_s, const Points& last_velocity) override;
+  void begin_step(double dt_s, const Points& last_velocity, double lead) override;
   double lead() const override { return settings_.lead; }
   void forces(Points& out) override;
   void update_tangent() override;

@@ -39,8 +39,8 @@ void TurnedBody::set_x(Points x) {
   moved();
 }
 
-void TurnedBody::begin_step(double dt_s, const Points& last_velocity) {
-  body_->begin_step(dt_s, to_case(last_velocity));
+void TurnedBody::begin_step(double dt_s, const Points& last_velocity, double lead) {
+  body_->begin_step(dt_s, to_case(last_velocity), lead);
 }
 
 void TurnedBody::forces(Points& out) {

@@ -26,8 +26,9 @@ class TurnedBody : public coupling::ImmersedBody {
   const coupling::Sampling* sampling() const override { return &sampling_; }
   std::size_t unknowns() const override { return body_->unknowns(); }
   std::vector<double> own_masses() const override { return body_->own_masses(); }
-  void begin_step(double dt_s, const Points& last_velocity) override;
+  void begin_step(double dt_s, const Points& last_velocity, double lead) override;
   double lead() const override { return body_->lead(); }
+  double least_lead() const override { return body_->least_lead(); }
   void forces(Points& out) override;
   void update_tangent() override { body_->update_tangent(); }
   void tangent_product(const Points& direction, Points& out) const override;

@@ -47,6 +47,21 @@ TEST(NativeLeaflets, PublishedFiguresBelongToOneClosedShape) {
   EXPECT_NEAR(shape.sizes().length_mm / d, 0.70, 0.04);  // Swanson and Clark 1974
 }
 
+TEST(NativeLeaflets, StressFreeEdgesAreShorterThanClosedOnesUnderPressure) {
+  auto p = fitted().proportions;
+  const Root root(fitted().lumen, 0, commissure_height(p));
+  const LeafletShape as_published(root, p, 0, 2 * pi / 3);
+  p.closed_stretch = 1.05;
+  const LeafletShape stretched(root, p, 0, 2 * pi / 3);
+  EXPECT_NEAR(as_published.sizes().free_edge_mm / stretched.sizes().free_edge_mm, 1.05, 1e-12);
+  // The closed shape, and with it the length of the leaflet, is the same.
+  EXPECT_EQ(as_published.sizes().length_mm, stretched.sizes().length_mm);
+  double length = 0;
+  for (int i = 1; i <= 2000; ++i)
+    length += (stretched.free_edge(-1 + i / 1000.0) - stretched.free_edge(-1 + (i - 1) / 1000.0)).norm();
+  EXPECT_NEAR(length / stretched.sizes().free_edge_mm, 1, 0.01);
+}
+
 TEST(NativeLeaflets, CrownFollowsTheMeasuredLine) {
   // Points of the line of Khelil et al. 2015: fraction of the way from commissure to commissure, height.
   const double line[][2] = {

@@ -138,6 +138,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "overlap"}),
     [](const auto& info) { return std::string(info.param.name); });
 
+TEST_F(Mesher, ClosedLeafletsAreNotShorterThanFreeOnes) {
+  state::write(at("segment.h5"), test::SyntheticRoot().state());
+  write_case("[native]\nclosed_stretch = 0.5\n");
+  EXPECT_EQ(run("--check"), 2);
+  EXPECT_NE(log().find("native.closed_stretch"), std::string::npos) << log();
+}
+
 TEST_F(Mesher, MissingParentNamesTheCommand) {
   write_case("");
   EXPECT_EQ(run(""), 2);
