@@ -65,6 +65,7 @@ metrics::Flutter flutter_of(const History& history, Window w, const metrics::Bea
 
 // Blood that is faster than the run's pressures could drive it, sqrt(2 (p_max - p_min) / rho), was thrown by
 // the structure: a burst of a stiff fold, which no alarm need have seen. The column holds |u| + |v| + |w|.
+// What the ramp of the initialisation slams shut rings on for about as long as the ramp.
 void check_speeds(Summary& s, const Parameters& p, const History& history) {
   double low = 0, high = 0, fastest = 0, at = 0;
   const std::vector<double> time = history.column("time_s"), speed = history.column("max_speed_cm_per_s");
@@ -74,7 +75,7 @@ void check_speeds(Summary& s, const Parameters& p, const History& history) {
       high = std::max(high, pressure * pa_per_mmHg);
     }
   for (std::size_t i = 0; i < time.size(); ++i) {
-    if (time[i] < p.initialisation_s || speed[i] <= fastest) continue;
+    if (time[i] < 2 * p.initialisation_s || speed[i] <= fastest) continue;
     fastest = speed[i];
     at = time[i];
   }

@@ -56,8 +56,9 @@ class Extremes:
                           "nan": "yes" if any(row["nan"] == "yes" for row in rows) else "no"})
         return found
 
-    def take_others(self, path):
-        """What the table there has of extremes that were not run now, in its place."""
+    def take_others(self, path, single_runs=False):
+        """What the table there has of extremes that were not run now, in its place; with single_runs of those, too, of which
+        only some runs were."""
         if not path.exists():
             return
         mine = {}
@@ -67,7 +68,9 @@ class Extremes:
         for row in read(path)[0]:
             exit_code = int(row["exit"]) if row["exit"].isdigit() else row["exit"]
             before.setdefault(row["extreme"], []).append(row | {"exit": exit_code})
-        self.rows = [row for extreme in {**before, **mine} for row in mine.get(extreme, before.get(extreme))]
+        self.rows = [row for extreme in {**before, **mine}
+                     for row in (merged(before.get(extreme, []), mine.get(extreme, [])) if single_runs
+                                 else mine.get(extreme, before.get(extreme)))]
 
     def write(self, out, source):
         """Both tables of this part to `out`, and the tables of all parts to runs/extremes."""
@@ -77,6 +80,14 @@ class Extremes:
         for row in self.limits():
             print("| " + " | ".join(str(cell)[:120] for cell in row.values()) + " |")
         print(f"written: {out / self.part}-extremes.csv, {self.part}-extremes-limits.csv, {FOLDER / 'extremes.csv'}")
+
+
+def merged(before, now):
+    """The rows of before with those of now in their places, new ones at the end."""
+    def key(row):
+        return row["series"], row["value"]
+    fresh = {key(row): row for row in now}
+    return [fresh.pop(key(row), row) for row in before] + list(fresh.values())
 
 
 def read(path):

@@ -314,8 +314,8 @@ def main():
         STORED_ONLY = bool(options.only) and part.__name__ not in options.only
         print(f"{part.__name__} ({time.monotonic() - start:.0f} s since the start)", flush=True)
         part()
-    if options.only:
-        STUDY.take_others(options.out / "cycle-extremes.csv")
+    if options.only or options.names:
+        STUDY.take_others(options.out / "cycle-extremes.csv", single_runs=bool(options.names))
     STUDY.write(options.out, source)
     print(f"all: {time.monotonic() - start:.0f} s")
 

@@ -57,6 +57,18 @@ def main():
         expect("the table of all parts", [row["part"] for row in table] == ["cycle"] * 4 and table[2]["exit"] == "3", table)
         expect("with a plot beside it", (folder / "runs" / "extremes.png").stat().st_size > 1000)
 
+        path = folder / "out" / "cycle-extremes.csv"
+        some = extremes.Extremes("cycle")
+        some.note("load", "up", "2", result(0), 1e-4)
+        some.note("load", "up", "4", result(2, "refused"))
+        some.take_others(path, single_runs=True)
+        expect("single runs take their places among the others", [(row["value"], row["error"]) for row in some.rows]
+               == [("1", "1.00e-03"), ("2", "1.00e-04"), ("3", ""), ("0", ""), ("4", "")], some.rows)
+        part = extremes.Extremes("cycle")
+        part.note("load", "up", "5", result(0), 1e-4)
+        part.take_others(path)
+        expect("an extreme that is run as a whole has its rows alone", [row["value"] for row in part.rows] == ["5"], part.rows)
+
         structure_runs.not_finite = lambda path: False  # the states are empty files
         extremes_cycle.FOLDER = folder / "runs"
         first = extremes_cycle.run("case", {"fluid.spacing_mm": 2}, base={})
