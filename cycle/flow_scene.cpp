@@ -67,6 +67,19 @@ void say_bodies(const flow_scene::Bodies& bodies) {
               rate, 0.1 * rate / (2 * M_PI));
 }
 
+/// Forces on an obstacle lag behind its motion by about a step and a half; nothing else shortens the steps
+/// where the motion is slow against the grid.
+void check_motion(Summary& summary, const flow_scene::Obstacles& obstacles) {
+  constexpr double most = 0.05;
+  const double change = obstacles.largest_change_of_velocity();
+  summary.checks["obstacle_velocity_change_per_step"] = {change, most, change <= most};
+  if (change > most)
+    log::warn(
+        "the velocity of an obstacle changes by {:.2g} of its largest in one step: forces on it are wrong by "
+        "about as much; give a smaller fluid.step_s, or let it start less suddenly",
+        change);
+}
+
 /// Of one core: forces, spreading and interpolation, and in one step of eight the search for its limit.
 double body_seconds_a_step(const flow_scene::Bodies& bodies) {
   constexpr double triangle_s = 0.5e-6, solid_node_s = 1e-6, point_s = 0.6e-6, searches = 1.8;
@@ -146,6 +159,7 @@ void run_flow_scene(StageContext& context) {
   context.summary.metrics = scene.metrics();
   context.summary.metrics["cells"] = static_cast<double>(grid.all_cells());
   context.summary.metrics["divergence_max_per_s"] = scene.flow().divergence();
+  if (scene.obstacles().move()) check_motion(context.summary, scene.obstacles());
   context.summary.steps = scene.steps();
   context.summary.simulated_s = scene.time_s();
   save(context, scene);

@@ -311,8 +311,27 @@ void Obstacles::update(fluid::Flow& flow, const Frame& frame, double time_s) {
     flow.solids().clear_body(obstacle.body);
   }
   for (const Obstacle& obstacle : obstacles_) {
-    if (!obstacle.part && obstacle.moves()) mark(flow, frame, obstacle, time_s);
+    if (obstacle.part || !obstacle.moves()) continue;
+    const fluid::RigidMotion before = flow.solids().motion(obstacle.body);
+    mark(flow, frame, obstacle, time_s);
+    const fluid::RigidMotion& now = flow.solids().motion(obstacle.body);
+    const double arm = std::min(obstacle.reach, (flow.grid().high() - flow.grid().low()).norm());
+    const auto size = [&](const Vec3& velocity, const Vec3& rate) {
+      return velocity.norm() + arm * rate.norm();
+    };
+    largest_change_ = std::max(largest_change_, size(now.velocity - before.velocity, now.rate - before.rate));
+    largest_velocity_ = std::max(largest_velocity_, size(now.velocity, now.rate));
   }
+}
+
+double Obstacles::largest_change_of_velocity() const {
+  return largest_velocity_ > 0 ? largest_change_ / largest_velocity_ : 0;
+}
+
+void Obstacles::restore(const std::vector<double>& saved) {
+  if (saved.size() != 2) throw InputError("scene/obstacles has {} entries, expected 2", saved.size());
+  largest_change_ = saved[0];
+  largest_velocity_ = saved[1];
 }
 
 double Obstacles::largest_speed(const fluid::Flow& flow) const {

@@ -393,6 +393,7 @@ std::map<std::string, state::Array> FlowScene::save_run() const {
   arrays["scene/history"] = state::Array::of(history_.values());
   arrays["scene/outlets"] = state::Array::of(sides_.save());
   arrays["scene/means"] = state::Array::of(probes_.save());
+  if (obstacles_.move()) arrays["scene/obstacles"] = state::Array::of(obstacles_.save());
   if (bodies_) arrays["scene/bodies"] = state::Array::of(bodies_->save());
   return arrays;
 }
@@ -415,7 +416,10 @@ void FlowScene::load_run(const state::State& state) {
     log::warn("profiles are averaged from {} s on, not from {} s: the state has averages from {} s on",
               time_s_, average_from_s_, march[2]);
   }
-  if (obstacles_.move()) obstacles_.update(*flow_, frame(), time_s_);
+  if (obstacles_.move()) {
+    obstacles_.update(*flow_, frame(), time_s_);
+    obstacles_.restore(state.array("scene/obstacles").doubles("scene/obstacles"));
+  }
   sides_.set(*flow_, time_s_, time_s_);
   if (bodies_) {
     bodies_->restore(state.array("scene/bodies").doubles("scene/bodies"));

@@ -205,6 +205,7 @@ TEST(FlowObstacles, AShaftThatSwingsCarriesItsAddedMass) {
   const double mass = 1e-3 * M_PI * 7.25 / 5.25 * 0.05, exact = 1e-6 * mass * 1e-3 * omega * omega;
   const auto [with_sin, with_cos] = harmonic(run, "shaft_x_N");
   std::printf("force / exact %.4f, quarter of a period off %.4f\n", with_sin / exact, with_cos / exact);
+  EXPECT_NEAR(run.scene.obstacles().largest_change_of_velocity(), omega * 5e-4, 1e-4);
   EXPECT_NEAR(with_sin / exact, 1, 0.1);
   EXPECT_NEAR(with_cos / exact, 0, 0.05);
 }
