@@ -9,20 +9,12 @@
 
 #include "core/errors.hpp"
 #include "structure/kirchhoff_element.hpp"
+#include "structure/share.hpp"
 
 namespace valsalva::structure {
 namespace {
 
 using Eigen::Matrix2d;
-
-struct Range {
-  int begin, end;
-};
-
-Range share(int count, Part part) {
-  const auto at = [&](int index) { return static_cast<int>(static_cast<long>(count) * index / part.count); };
-  return {at(part.index), at(part.index + 1)};
-}
 
 template <class Count>
 void require_size(const char* what, Count found, Count expected) {
