@@ -47,6 +47,7 @@ struct ImmersedStructureSettings {
   /// Of the forces, as step_lead for leaflets: steps of 1.9 times the length, but more error in time (the
   /// spinning disc of 8 cells a radius: 0.113 instead of 0.074).
   double lead = 0;
+  std::optional<double> least_lead;  ///< in a fluid at rest, as for leaflets; none: always lead
   /// Do solids keep the volume of each of their parts (volume_keeper.hpp)?
   bool keep_volume = false;
 };
@@ -78,6 +79,7 @@ class ImmersedStructure : public ImmersedBody {
   std::vector<double> own_masses() const override;
   void begin_step(double dt_s, const Points& last_velocity, double lead) override;
   double lead() const override { return settings_.lead; }
+  double least_lead() const override { return settings_.least_lead.value_or(settings_.lead); }
   void forces(Points& out) override;
   void update_tangent() override;
   void tangent_product(const Points& direction, Points& out) const override;

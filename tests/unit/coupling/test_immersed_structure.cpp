@@ -274,6 +274,7 @@ TEST(ImmersedStructure, AShellTermMovesAsTheImmersedShellDoes) {
   ImmersedStructureSettings settings;
   settings.cells = cells_of(mesh.triangles);
   settings.lead = step_lead;
+  settings.least_lead = least_step_lead;
   ImmersedFlow general(
       other,
       std::make_unique<ImmersedStructure>(
