@@ -1,10 +1,9 @@
 // Native leaflets: how large they are, and their stress-free shape in a measured root.
 //
 // Sizes, from the closed valve (d annulus diameter, R_n wall radius at the nadirs, R_c at the commissures, H
-// height of the commissures, c coaptation height, e excess, s stretch of the closed free edge under
-// pressure):
-//   closed edge    L = max(1.24 d, 2 (1 + e) R_c)                 (1.24 d: Swanson and Clark 1974, casts
-//                                                                  under pressure); stress-free L / s
+// height of the commissures, c coaptation height, e excess, s stretch of the closed edge under pressure):
+//   closed edge    L = max(1.24 d, 2 (1 + e) R_c)                 (1.24 d: Swanson and Clark 1974, of casts
+//                                                                  under pressure); stress-free: L / s
 //   z_f = H - sqrt((L / (2 (1 + e)))^2 - R_c^2)                   height of the closed free edge at the axis
 //   z_b = z_f - c                                                 where coaptation begins
 //   leaflet length = (1 + e) (sqrt(R_n^2 + z_b^2) + c) + peak

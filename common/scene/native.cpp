@@ -27,17 +27,15 @@ void declare_native(Schema& schema) {
       "the sinotubular junction");
   schema.real("native.free_edge_factor", 1.24, {1, 2},
               "Length of a closed free edge in annulus diameters (Swanson and Clark 1974); more where the "
-              "commissures "
-              "stand too far apart for it");
+              "commissures stand too far apart for it");
   schema.real("native.coaptation_height_factor", 0.17, {0.05, 0.4},
               "Height of coaptation in annulus diameters (Swanson and Clark 1974)");
   schema.real("native.free_edge_excess", 0.03, {0, 0.3},
               "Relative length of free edge and leaflet beyond what the closed shape needs");
   schema.real(
       "native.closed_stretch", 0, {0, 1.3},
-      "By how much the free edge is longer in the closed, loaded valve, whose lengths the published ones "
-      "are, "
-      "than without stress; 0: 1.05, or 1 with a stenosis_factor above 10 (stiff leaflets do not stretch)");
+      "Stretch of the free edge in the closed, loaded valve, whose lengths the published ones are; 0: "
+      "1.05, or 1 with a stenosis_factor above 10 (stiff leaflets do not stretch)");
   schema.real(
       "native.free_edge_peak_factor", 0.05, {0, 0.15},
       "Rise of the free edge at its middle in annulus diameters, so that the centre closes (assumed)");
