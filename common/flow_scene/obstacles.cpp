@@ -230,6 +230,7 @@ bool Obstacles::move() const {
 }
 
 void Obstacles::place(fluid::Flow& flow, const Frame& frame, double time_s, const Points& sharp_at) {
+  largest_.assign(2 * obstacles_.size(), 0.0);
   std::vector<Distance> walls;
   for (Obstacle& obstacle : obstacles_) {
     if (obstacle.part) continue;
@@ -310,7 +311,8 @@ void Obstacles::update(fluid::Flow& flow, const Frame& frame, double time_s) {
     if (obstacle.part || !obstacle.moves()) continue;
     flow.solids().clear_body(obstacle.body);
   }
-  for (const Obstacle& obstacle : obstacles_) {
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    const Obstacle& obstacle = obstacles_[i];
     if (obstacle.part || !obstacle.moves()) continue;
     const fluid::RigidMotion before = flow.solids().motion(obstacle.body);
     mark(flow, frame, obstacle, time_s);
@@ -319,19 +321,22 @@ void Obstacles::update(fluid::Flow& flow, const Frame& frame, double time_s) {
     const auto size = [&](const Vec3& velocity, const Vec3& rate) {
       return velocity.norm() + arm * rate.norm();
     };
-    largest_change_ = std::max(largest_change_, size(now.velocity - before.velocity, now.rate - before.rate));
-    largest_velocity_ = std::max(largest_velocity_, size(now.velocity, now.rate));
+    largest_[2 * i] = std::max(largest_[2 * i], size(now.velocity - before.velocity, now.rate - before.rate));
+    largest_[2 * i + 1] = std::max(largest_[2 * i + 1], size(now.velocity, now.rate));
   }
 }
 
 double Obstacles::largest_change_of_velocity() const {
-  return largest_velocity_ > 0 ? largest_change_ / largest_velocity_ : 0;
+  double most = 0;
+  for (std::size_t i = 0; i < largest_.size(); i += 2)
+    if (largest_[i + 1] > 0) most = std::max(most, largest_[i] / largest_[i + 1]);
+  return most;
 }
 
 void Obstacles::restore(const std::vector<double>& saved) {
-  if (saved.size() != 2) throw InputError("scene/obstacles has {} entries, expected 2", saved.size());
-  largest_change_ = saved[0];
-  largest_velocity_ = saved[1];
+  if (saved.size() != 2 * obstacles_.size())
+    throw InputError("scene/obstacles has {} entries, expected {}", saved.size(), 2 * obstacles_.size());
+  largest_ = saved;
 }
 
 double Obstacles::largest_speed(const fluid::Flow& flow) const {

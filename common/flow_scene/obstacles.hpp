@@ -60,10 +60,10 @@ class Obstacles {
   void update(fluid::Flow& flow, const Frame& frame, double time_s);
   /// Of moving bodies now, sum of the components, mm/s; a bound.
   double largest_speed(const fluid::Flow& flow) const;
-  /// Over all updates: the largest change of a moving obstacle's velocity from one to the next over its
-  /// largest velocity. Forces on it are late by about three quarters of that.
+  /// Over all updates: the largest change of a moving obstacle's velocity from one to the next over its own
+  /// largest velocity; of all obstacles the largest. Forces are late by about three quarters of that.
   double largest_change_of_velocity() const;
-  std::vector<double> save() const { return {largest_change_, largest_velocity_}; }
+  const std::vector<double>& save() const { return largest_; }
   void restore(const std::vector<double>& saved);
   /// Of the fluid on an obstacle over the last step: micronewton and micronewton mm about a point, axes of
   /// the case (collective). By the momentum that its faces take, less what its own motion asks of the fluid
@@ -79,8 +79,8 @@ class Obstacles {
   void mark(fluid::Flow& flow, const Frame& frame, const Obstacle& obstacle, double time_s) const;
 
   std::vector<Obstacle> obstacles_;
-  double difference_s_;  ///< time difference for velocities
-  double largest_change_ = 0, largest_velocity_ = 0;
+  double difference_s_;          ///< time difference for velocities
+  std::vector<double> largest_;  ///< of each obstacle by turns: change of velocity, velocity
 };
 
 }  // namespace valsalva::flow_scene

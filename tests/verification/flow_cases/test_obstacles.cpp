@@ -210,6 +210,32 @@ TEST(FlowObstacles, AShaftThatSwingsCarriesItsAddedMass) {
   EXPECT_NEAR(with_cos / exact, 0, 0.05);
 }
 
+// One ball trembles slowly beside one that moves on fast and evenly: each has its own measure.
+TEST(FlowObstacles, StepsAreHeldAgainstEveryMotion) {
+  FlowRun run(R"toml(
+[fluid]
+box_mm = [0, 0, 0, 8, 4, 4]
+grid_mm = 0.5
+density_g_per_mm3 = 1e-3
+viscosity_Pa_s = 4e-3
+end_s = 0.1
+step_s = 1e-3
+history_rows = 1
+[[obstacle]]
+name = "trembling"
+radius_mm = 0.8
+centre_mm = [2, 2, 2]
+displacement = ["0.01*sin(50*t)", "0", "0"]
+[[obstacle]]
+name = "even"
+radius_mm = 0.8
+centre_mm = [5, 2, 2]
+displacement = ["10*t", "0", "0"]
+)toml");
+  run.to_end();
+  EXPECT_NEAR(run.scene.obstacles().largest_change_of_velocity(), 50e-3, 2e-3);
+}
+
 // A shaft that turns to and fro (Stokes): torque -2 pi mu R^2 (k R K0(k R) / K1(k R) + 2) times the rate, a
 // length, k = (1 + i) / delta with delta = sqrt(2 nu / w) = 0.3 R; the sleeve is five delta away.
 TEST(FlowObstacles, AShaftThatTurnsToAndFro) {
