@@ -149,9 +149,9 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
   if (hooks.set_force) {
     hooks.set_force(done.dt_s);
     forced_ = {};
-  } else {
+  } else if (body_) {
     clear(flow_.slab(), forced_, flow_.force());
-    forced_ = body_ ? transfer_.planes() : fluid::Planes{0, 0};
+    forced_ = transfer_.planes();
   }
   if (body_) {
     body_->begin_step(done.dt_s, last_velocity_, lead());
@@ -161,7 +161,7 @@ ImmersedStep ImmersedFlow::step(double at_most, const StepHooks& hooks) {
   const double limit = settings_.limits.cfl * caution_;
   for (;; ++done.repeats) {
     if (hooks.set_ends) hooks.set_ends(done.dt_s);
-    flow_.predict(done.dt_s);
+    flow_.predict(done.dt_s, {.forced = forced_});
     done.fluid = flow_.project(done.dt_s);
     if (done.fluid.cfl <= limit) break;
     flow_.undo();

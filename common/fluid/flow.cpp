@@ -55,7 +55,6 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
       velocity_(slab_),
       next_(slab_),
       rate_(slab_),
-      force_(slab_),
       pressure_(slab_),
       correction_(slab_) {
   if (parameters.implicit_viscosity) {
@@ -233,7 +232,8 @@ void Flow::advance(Advance step, const PredictOptions& options) {
     prepare_cells();
     openings_->keep_rates(rate_);
   }
-  if (options.force) step.force = &force_;
+  if (force_) step.force = &*force_;
+  step.forced = options.forced;
   if (options.old_pressure) {
     fill_phi_ghosts(pressure_, end_pressure_);
     step.pressure = &pressure_;

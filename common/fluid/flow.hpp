@@ -51,6 +51,7 @@
 #include "fluid/momentum.hpp"
 #include "fluid/openings.hpp"
 #include "fluid/pressure_solver.hpp"
+#include "fluid/row_motion.hpp"
 #include "fluid/solids.hpp"
 #include "fluid/viscosity.hpp"
 #include "state/state.hpp"
@@ -72,7 +73,7 @@ struct FlowParameters {
 };
 
 struct PredictOptions {
-  bool force = true;         ///< use force()
+  Planes forced = {};        ///< outside of them force() is zero
   bool old_pressure = true;  ///< false: a non-incremental step (p^(n+1) = phi)
   bool penalise = true;
 };
@@ -106,8 +107,9 @@ class Flow {
   FaceField& velocity() { return velocity_; }
   const FaceField& velocity() const { return velocity_; }
   const Field& pressure() const { return pressure_; }
-  /// Force density on the fluid, micronewton/mm3, on the owned faces.
-  FaceField& force() { return force_; }
+  /// Force density on the fluid, micronewton/mm3, on the owned faces. Zero, and no memory, until it is asked
+  /// for.
+  FaceField& force() { return force_ ? *force_ : force_.emplace(slab_); }
   void fill_ghosts();
 
   /// Initial velocity (component d at the position of its face, mm/s) and pressure; forgets the step history.
@@ -259,7 +261,7 @@ class Flow {
   void fill_source(int k, double per_dt, Given through, double* plane);
   void keep_correction(int k, const double* plane);
   StepReport correct(double dt);
-  StepReport report_of(double dt, double energy, double speed) const;
+  StepReport report_of(double dt, const RowMotion& motion) const;
   [[noreturn]] void report_not_finite() const;
   // The part of this rank: the value where it holds the point, 0 elsewhere.
   double sample(const Field& field, int d, const Vec3& x) const;
@@ -288,7 +290,8 @@ class Flow {
   std::vector<Shell> shell_;
   std::unique_ptr<ImplicitViscosity> implicit_viscosity_;
   std::unique_ptr<ExtraViscosity> extra_viscosity_;  ///< none: the viscosity is constant
-  FaceField velocity_, next_, rate_, force_;
+  FaceField velocity_, next_, rate_;
+  std::optional<FaceField> force_;
   Field pressure_, correction_;
   std::array<double, 2> end_pressure_{};
   std::function<StepReport(double dt, const StepReport& found)> after_projection_;

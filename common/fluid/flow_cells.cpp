@@ -165,33 +165,29 @@ StepReport Flow::correct_cells(double dt) {
   const double factor = dt / (parameters_.density * slab_.grid.h), keep = keep_pressure_ ? 1 : 0;
   const std::array<std::ptrdiff_t, 3> stride{1, slab_.stride_y, slab_.stride_z};
   double* phi = correction_.data().data();
-  double energy = 0, speed = openings_->largest_speed(velocity_);
+  RowMotion motion{.speed = openings_->largest_speed(velocity_)};
   for (int d = 0; d < 3; ++d) {
     double* u = velocity_[d].data().data();
     for (const Run& run : fluid_faces_[d]) {
-#pragma omp simd reduction(+ : energy)
-      for (std::ptrdiff_t i = run.first; i < run.first + run.count; ++i) {
+#pragma omp simd
+      for (std::ptrdiff_t i = run.first; i < run.first + run.count; ++i)
         u[i] -= factor * (phi[i] - phi[i - stride[d]]);
-        energy += u[i] * u[i];
-      }
+      motion.add_squares(u + run.first, run.count);
     }
   }
   const std::vector<double> unchanged(openings_->count(), 0.0);
   openings_->correct(factor, keep_pressure_ ? unchanged : openings_->pressures(), correction_, velocity_);
-  speed = std::max(speed, openings_->largest_speed(velocity_));
+  motion.speed = std::max(motion.speed, openings_->largest_speed(velocity_));
   const double *u = velocity_[0].data().data(), *v = velocity_[1].data().data(),
                *w = velocity_[2].data().data();
   const double* p = pressure_.data().data();
   for (const Run& run : fluid_cells_) {
-#pragma omp simd reduction(max : speed)
-    for (std::ptrdiff_t i = run.first; i < run.first + run.count; ++i) {
-      const double sum = std::abs(u[i]) + std::abs(v[i]) + std::abs(w[i]);
-      speed = speed < sum ? sum : speed;
-      phi[i] += keep * p[i];
-    }
+    motion.add_speed(u + run.first, v + run.first, w + run.first, run.count);
+#pragma omp simd
+    for (std::ptrdiff_t i = run.first; i < run.first + run.count; ++i) phi[i] += keep * p[i];
   }
   pressure_.swap(correction_);
-  return report_of(dt, energy, speed);
+  return report_of(dt, motion);
 }
 
 // Beside the fluid, so that it can be read between cells up to the wall.

@@ -116,79 +116,75 @@ StepReport Flow::correct_fourth_order(double dt) {
   const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
   const double factor = dt / (parameters_.density * slab_.grid.h);
   const double keep = keep_pressure_ ? 1 : 0;
-  double energy = 0, speed = 0;
+  RowMotion motion;
   for (int k = 0; k < slab_.planes; ++k) {
     for (int j = 0; j < ny; ++j) {
       const double* phi = correction_.row(j, k);
       double* u = velocity_[0].row(j, k);
       double* v = velocity_[1].row(j, k);
       double* w = velocity_[2].row(j, k);
-#pragma omp simd reduction(+ : energy) reduction(max : speed)
+#pragma omp simd
       for (int i = 0; i < nx; ++i) {
         u[i] -= factor * fourth_order::difference(phi + i, 1);
         v[i] -= factor * fourth_order::difference(phi + i, sy);
         w[i] -= factor * fourth_order::difference(phi + i, sz);
-        energy += u[i] * u[i] + v[i] * v[i] + w[i] * w[i];
-        const double sum = std::abs(u[i]) + std::abs(v[i]) + std::abs(w[i]);
-        speed = speed < sum ? sum : speed;
       }
+      motion.add(u, v, w, nx);
     }
   }
   for (std::size_t i = 0; i < correction_.data().size(); ++i)
     correction_.data()[i] += keep * pressure_.data()[i];
   pressure_.swap(correction_);
-  return report_of(dt, energy, speed);
+  return report_of(dt, motion);
 }
 
-// Downwards, so that the new pressure can take the place of phi where no face above needs it any more: the
+// The new pressure takes the place of phi where no face needs it any more, a plane behind the velocity: the
 // old pressure stays for undo().
 StepReport Flow::correct(double dt) {
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
   const double factor = dt / (parameters_.density * slab_.grid.h);
   const double keep = keep_pressure_ ? 1 : 0;
-  double energy = 0, speed = 0;
-  for (int k = slab_.w_planes() - 1; k >= 0; --k) {
-    const bool inside = k < slab_.planes;
-    for (int j = ny - 1; j >= 0; --j) {
+  RowMotion motion;
+  const auto add_old_pressure = [&](int k) {
+    for (int j = 0; j < ny; ++j) {
       double* phi = correction_.row(j, k);
-      double* w = velocity_[2].row(j, k);
-      if (inside) {
-        double* u = velocity_[0].row(j, k);
-        double* v = velocity_[1].row(j, k);
-        const double* p = pressure_.row(j, k);
-#pragma omp simd reduction(+ : energy) reduction(max : speed)
-        for (int i = 0; i < nx; ++i) {
-          const double un = u[i] - factor * (phi[i] - phi[i - 1]);
-          const double vn = v[i] - factor * (phi[i] - phi[i - sy]);
-          const double wn = w[i] - factor * (phi[i] - phi[i - sz]);
-          u[i] = un;
-          v[i] = vn;
-          w[i] = wn;
-          energy += un * un + vn * vn + wn * wn;
-          const double sum = std::abs(un) + std::abs(vn) + std::abs(wn);
-          speed = speed < sum ? sum : speed;
-        }
+      const double* p = pressure_.row(j, k);
 #pragma omp simd
-        for (int i = 0; i < nx; ++i) phi[i] += keep * p[i];
-      } else {
-        for (int i = 0; i < nx; ++i) {
-          w[i] -= factor * (phi[i] - phi[i - sz]);
-          energy += w[i] * w[i];
-          speed = std::max(speed, std::abs(w[i]));
-        }
-      }
+      for (int i = 0; i < nx; ++i) phi[i] += keep * p[i];
     }
+  };
+  for (int k = 0; k < slab_.w_planes(); ++k) {
+    for (int j = 0; j < ny; ++j) {
+      const double* phi = correction_.row(j, k);
+      double* w = velocity_[2].row(j, k);
+      if (k == slab_.planes) {
+        for (int i = 0; i < nx; ++i) w[i] -= factor * (phi[i] - phi[i - sz]);
+        motion.add(w, nx);
+        continue;
+      }
+      double* u = velocity_[0].row(j, k);
+      double* v = velocity_[1].row(j, k);
+#pragma omp simd
+      for (int i = 0; i < nx; ++i) {
+        u[i] -= factor * (phi[i] - phi[i - 1]);
+        v[i] -= factor * (phi[i] - phi[i - sy]);
+        w[i] -= factor * (phi[i] - phi[i - sz]);
+      }
+      motion.add(u, v, w, nx);
+    }
+    if (k > 0) add_old_pressure(k - 1);
   }
+  if (slab_.w_planes() == slab_.planes) add_old_pressure(slab_.planes - 1);
   pressure_.swap(correction_);
-  return report_of(dt, energy, speed);
+  return report_of(dt, motion);
 }
 
-StepReport Flow::report_of(double dt, double energy, double speed) const {
+StepReport Flow::report_of(double dt, const RowMotion& motion) const {
   StepReport report;
   report.kinetic_energy =
-      mpi::sum(slab_.comm, 0.5 * parameters_.density * std::pow(slab_.grid.h, 3) * energy);
-  report.max_speed = mpi::max(slab_.comm, speed);
+      mpi::sum(slab_.comm, 0.5 * parameters_.density * std::pow(slab_.grid.h, 3) * motion.squares);
+  report.max_speed = mpi::max(slab_.comm, motion.speed);
   report.cfl = dt * report.max_speed / slab_.grid.h;
   return report;
 }

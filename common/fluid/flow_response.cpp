@@ -60,8 +60,8 @@ void Flow::gather_rises(const std::vector<PressureRise>& rises) {
   if (!raised_) raised_.emplace(slab_);
   raised_->fill(0);
   for (const auto& [place, by] : rises) {
-    const std::vector<double>& unit = unit_pressure(place).data();
-    std::vector<double>& sum = raised_->data();
+    const Field::Data& unit = unit_pressure(place).data();
+    Field::Data& sum = raised_->data();
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += by * unit[i];
   }
   fill_phi_ghosts(*raised_, raised_end_);
@@ -125,35 +125,28 @@ StepReport Flow::raise(const std::vector<PressureRise>& rises, double dt) {
 }
 
 StepReport Flow::measure(double dt) const {
-  double energy = 0, speed = 0;
-  const double *u = velocity_[0].data().data(), *v = velocity_[1].data().data(),
-               *w = velocity_[2].data().data();
+  RowMotion motion;
   if (krylov_) {
+    const double *u = velocity_[0].data().data(), *v = velocity_[1].data().data(),
+                 *w = velocity_[2].data().data();
     for (int d = 0; d < 3; ++d) {
-      const double* of = velocity_[d].data().data();
-      for (const Run& run : fluid_faces_[d]) {
-        for (std::ptrdiff_t i = run.first; i < run.first + run.count; ++i) energy += of[i] * of[i];
-      }
+      for (const Run& run : fluid_faces_[d])
+        motion.add_squares(velocity_[d].data().data() + run.first, run.count);
     }
-    for (const Run& run : fluid_cells_) {
-      for (std::ptrdiff_t i = run.first; i < run.first + run.count; ++i)
-        speed = std::max(speed, std::abs(u[i]) + std::abs(v[i]) + std::abs(w[i]));
-    }
-    speed = std::max(speed, openings_->largest_speed(velocity_));
-    return report_of(dt, energy, speed);
+    for (const Run& run : fluid_cells_)
+      motion.add_speed(u + run.first, v + run.first, w + run.first, run.count);
+    motion.speed = std::max(motion.speed, openings_->largest_speed(velocity_));
+    return report_of(dt, motion);
   }
+  const int nx = slab_.grid.cells[0];
   for (int k = 0; k < slab_.w_planes(); ++k) {
-    const bool inside = k < slab_.planes;
     for (int j = 0; j < slab_.grid.cells[1]; ++j) {
-      const std::ptrdiff_t row = velocity_[2].index(0, j, k);
-      for (std::ptrdiff_t i = row; i < row + slab_.grid.cells[0]; ++i) {
-        const double un = inside ? u[i] : 0, vn = inside ? v[i] : 0;
-        energy += un * un + vn * vn + w[i] * w[i];
-        speed = std::max(speed, std::abs(un) + std::abs(vn) + std::abs(w[i]));
-      }
+      const double* w = velocity_[2].row(j, k);
+      k < slab_.planes ? motion.add(velocity_[0].row(j, k), velocity_[1].row(j, k), w, nx)
+                       : motion.add(w, nx);
     }
   }
-  return report_of(dt, energy, speed);
+  return report_of(dt, motion);
 }
 
 }  // namespace valsalva::fluid

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstddef>
+#include <new>
 #include <vector>
 
 #include "core/mpi.hpp"
@@ -61,10 +62,30 @@ struct Slab {
   std::size_t size() const { return static_cast<std::size_t>(stride_z) * (planes + 2 * ghosts); }
 };
 
+/// Memory in which cell 0 of every row begins a cache line, so that whole vectors of a row lie in one line
+/// each.
+template <class T>
+struct RowAligned {
+  using value_type = T;
+  static constexpr std::size_t line = 64, lead = line - ghosts * sizeof(T) % line;
+  RowAligned() = default;
+  template <class U>
+  RowAligned(const RowAligned<U>&) {}
+  T* allocate(std::size_t count) {
+    char* raw = static_cast<char*>(::operator new(count * sizeof(T) + lead, std::align_val_t(line)));
+    return reinterpret_cast<T*>(raw + lead);
+  }
+  void deallocate(T* data, std::size_t) {
+    ::operator delete(reinterpret_cast<char*>(data) - lead, std::align_val_t(line));
+  }
+  bool operator==(const RowAligned&) const = default;
+};
+
 /// One scalar on the owned block with its ghosts; indices i, j and the *local* plane k run from -ghosts on.
 /// A field keeps the strides of its slab and no reference to it.
 class Field {
  public:
+  using Data = std::vector<double, RowAligned<double>>;
   explicit Field(const Slab& slab);
   double& operator()(int i, int j, int k) { return data_[index(i, j, k)]; }
   double operator()(int i, int j, int k) const { return data_[index(i, j, k)]; }
@@ -76,14 +97,14 @@ class Field {
   }
   std::ptrdiff_t stride_y() const { return stride_y_; }
   std::ptrdiff_t stride_z() const { return stride_z_; }
-  std::vector<double>& data() { return data_; }
-  const std::vector<double>& data() const { return data_; }
+  Data& data() { return data_; }
+  const Data& data() const { return data_; }
   void fill(double value) { data_.assign(data_.size(), value); }
   void swap(Field& other) noexcept { data_.swap(other.data_); }
 
  private:
   std::ptrdiff_t stride_y_, stride_z_;
-  std::vector<double> data_;
+  Data data_;
 };
 
 /// A vector on the faces: velocity (mm/s), force density (micronewton/mm3), rate of change (mm/s2).

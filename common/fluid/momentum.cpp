@@ -43,6 +43,15 @@ Momentum::Momentum(const Slab& slab, const Boundaries& boundaries, Convection sc
   flux_y_.resize(nx);
 }
 
+namespace {
+
+template <int write>
+void prefetch(const double* row, int count) {
+  for (int i = 0; i < count; i += 8) __builtin_prefetch(row + i, write);
+}
+
+}  // namespace
+
 template <class Flux>
 void Momentum::start_plane_fluxes(const Flux& flux, const FaceField& velocity) {
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
@@ -70,6 +79,8 @@ void Momentum::plane(const Flux& flux, int d, int k, const FaceField& velocity, 
   double* __restrict fx = flux_x_.data();
   double* __restrict fy = flux_y_.data();
 
+  const bool forced = step.force && step.forced.has(k);
+
   const double* v0 = velocity[1].row(0, k);
   for (int i = 0; i < nx; ++i) fy[i] = flux(velocity[d].row(0, k) + i, sy, v0 + i, sd);
 
@@ -79,11 +90,15 @@ void Momentum::plane(const Flux& flux, int d, int k, const FaceField& velocity, 
     const double* v = velocity[1].row(j + 1, k);
     const double* w = velocity[2].row(j, k + 1);
     const double* p = step.pressure ? step.pressure->row(j, k) : q;  // gradient = 0 without one
-    const double* f = step.force ? (*step.force)[d].row(j, k) : nullptr;
+    const double* f = forced ? (*step.force)[d].row(j, k) : nullptr;
     double* __restrict fz = flux_z_[d].data() + static_cast<std::size_t>(j) * nx;
     double* __restrict n = rate[d].row(j, k);
     double* __restrict out = next[d].row(j, k);
     [[maybe_unused]] const double outward = k == 0 ? -1 : 1;
+    prefetch<0>(velocity[d].row(j + 1, k) + 2 * sz, nx);
+    prefetch<1>(rate[d].row(j + 1, k), nx);
+    prefetch<1>(next[d].row(j + 1, k), nx);
+    if (step.pressure) prefetch<0>(step.pressure->row(j + 1, k), nx);
 #pragma omp simd
     for (int i = 0; i <= nx; ++i) fx[i] = flux(q + i, 1, u + i, sd);
 #pragma omp simd

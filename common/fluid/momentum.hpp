@@ -31,6 +31,7 @@
 #include "fluid/boundary.hpp"
 #include "fluid/convective_flux.hpp"
 #include "fluid/grid.hpp"
+#include "fluid/pressure_solver.hpp"
 
 namespace valsalva::fluid {
 
@@ -45,6 +46,7 @@ struct Advance {
   double weight_new = 1, weight_old = 0;
   double density = 1;
   const FaceField* force = nullptr;  ///< none: no force
+  Planes forced = {};                ///< outside of them the force is zero
   const Field* pressure = nullptr;   ///< one valid ghost layer (order 4: two); none: no gradient
 };
 

@@ -136,17 +136,12 @@ void PlaneTransform::forward(const double* cells, double* modes) {
       [](int j) { return j; });
   x_.clear_padding();
   fftw_execute(x_.to_spectrum.get());
-  x_.separate(x_.spectrum.get(), x_.stride, x_.cells.get(), x_.stride);
-  for (int i = 0; i < nx; ++i)
-    std::copy_n(x_.cells.get() + i * x_.stride, ny, modes + static_cast<std::size_t>(i) * ny);
+  x_.separate(x_.spectrum.get(), x_.stride, modes, mode_row());
 }
 
 void PlaneTransform::backward(const double* modes, double* cells) {
   const int nx = x_.n, ny = y_.n;
-  for (int i = 0; i < nx; ++i)
-    std::copy_n(modes + static_cast<std::size_t>(i) * ny, ny, x_.cells.get() + i * x_.stride);
-  x_.clear_padding();
-  x_.unite(x_.cells.get(), x_.stride, x_.spectrum.get(), x_.stride);
+  x_.unite(modes, mode_row(), x_.spectrum.get(), x_.stride);
   fftw_execute(x_.to_cells.get());
   transpose(
       nx, ny, x_.cells.get(), x_.stride, y_.cells.get(), y_.stride, [](int j) { return j; },

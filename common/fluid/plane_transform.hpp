@@ -24,7 +24,10 @@ class PlaneTransform {
   /// EnvironmentError when out of memory.
   PlaneTransform(int nx, int ny, bool periodic_x, bool periodic_y);
 
-  /// cells: ny rows of nx. modes: nx rows of ny, the mode (p, q) of x and y at p ny + q.
+  /// Doubles of a row of modes: ny, or one more, which means nothing but stays finite, where ny is odd.
+  int mode_row() const { return x_.columns; }
+
+  /// cells: ny rows of nx. modes: nx such rows, the mode (p, q) of x and y at p mode_row() + q.
   void forward(const double* cells, double* modes);
   /// The inverse times 4 nx ny.
   void backward(const double* modes, double* cells);

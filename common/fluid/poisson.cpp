@@ -41,15 +41,15 @@ struct Poisson::Impl {
   MPI_Comm comm;
   int rank, ranks, planes, nx, ny, nz;
   std::vector<int> firsts;
-  std::size_t modes;
   double h;
   bool periodic_z, free_mean, reversed, has_start, has_end;
   PlaneTransform transform;
-  std::vector<double> cells, work, previous;  ///< a plane of cells, two of modes
-  std::vector<double> shift;                  ///< eigenvalue of each mode
-  std::vector<double> inverse;                ///< of the pivots, plane by plane
-  std::vector<double> reduced;                ///< right-hand side, then forward-eliminated
-  double scale = 1;                           ///< -h^2 and the transforms' normalisation
+  std::size_t modes;                ///< of a plane, with those that only fill its rows
+  std::vector<double> cells, work;  ///< a plane of cells, one of modes
+  std::vector<double> shift;        ///< eigenvalue of each mode
+  std::vector<double> inverse;      ///< of the pivots, plane by plane
+  std::vector<double> reduced;      ///< right-hand side, then forward-eliminated
+  double scale = 1;                 ///< -h^2 and the transforms' normalisation
 
   // Values at the ends: x_first = first + gain xs + ..., of this rank, one number a mode.
   std::vector<double> first_value, chain, start_value, end_value;
@@ -67,13 +67,12 @@ Poisson::Impl::Impl(const Slab& slab, const Boundaries& boundaries)
       nx(slab.grid.cells[0]),
       ny(slab.grid.cells[1]),
       nz(slab.grid.cells[2]),
-      modes(slab.grid.plane_cells()),
       h(slab.grid.h),
       periodic_z(slab.periodic_z),
       transform(nx, ny, boundaries.periodic(0), boundaries.periodic(1)),
-      cells(modes),
-      work(modes),
-      previous(modes) {
+      modes(static_cast<std::size_t>(nx) * transform.mode_row()),
+      cells(slab.grid.plane_cells()),
+      work(modes) {
   for (int r = 0; r <= ranks; ++r) {
     firsts.push_back(slab.first_of(r));
     mode_first.push_back(static_cast<int>(modes * r / ranks));
@@ -87,9 +86,10 @@ Poisson::Impl::Impl(const Slab& slab, const Boundaries& boundaries)
   scale = -h * h / (4.0 * nx * ny);
   const std::vector<double> lx = eigenvalues(nx, boundaries.periodic(0)),
                             ly = eigenvalues(ny, boundaries.periodic(1));
-  shift.resize(modes);
+  shift.assign(modes, 1.0);
   for (int i = 0; i < nx; ++i) {
-    for (int j = 0; j < ny; ++j) shift[static_cast<std::size_t>(i) * ny + j] = lx[i] + ly[j];
+    for (int j = 0; j < ny; ++j)
+      shift[static_cast<std::size_t>(i) * transform.mode_row() + j] = lx[i] + ly[j];
   }
   if (free_mean) shift[0] = 1;  // any regular value: this mode is solved apart
   mean_mode.resize(planes);
@@ -265,22 +265,22 @@ void Poisson::Impl::backward(const Sink& phi, Planes within) {
       }
     }
   }
-  double* before = previous.data();
+  double* x = work.data();
   if (has_end) {
-    std::copy_n(end_value.data(), modes, before);
+    std::copy_n(end_value.data(), modes, x);
   } else {
-    std::fill_n(before, modes, 0.0);
+    std::fill_n(x, modes, 0.0);
   }
-  double* out = work.data();
   for (int step = planes - 1; step >= 0; --step) {
     const double* pivot = plane(inverse, step);
     const double* now = plane(reduced, step);
 #pragma omp simd
-    for (std::size_t m = 0; m < modes; ++m) out[m] = before[m] = now[m] + pivot[m] * before[m];
+    for (std::size_t m = 0; m < modes; ++m) x[m] = now[m] + pivot[m] * x[m];
     const int k = static_cast<int>(plane_of(step));
     if (!within.has(k)) continue;
-    if (free_mean) out[0] = mean_mode[k];
-    transform.backward(out, cells.data());
+    if (free_mean) std::swap(x[0], mean_mode[k]);
+    transform.backward(x, cells.data());
+    if (free_mean) std::swap(x[0], mean_mode[k]);
     phi(k, cells.data());
   }
 }
