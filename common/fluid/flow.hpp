@@ -253,13 +253,12 @@ class Flow {
   void gather_rises(const std::vector<PressureRise>& rises);
   double raised_at(int k) const;
   StepReport measure(double dt) const;
-  void fill_source_fourth_order(int k, double per_dt, double* plane) const;
+  void fill_source_fourth_order(int k, double per_dt, const CellRows& b) const;
   StepReport correct_fourth_order(double dt);
   /// The low faces of a cell of the local plane k.
   std::array<const double*, 3> faces_of(int place, int k) const;
   enum class Given { velocity, nothing };  ///< through inflow sides
-  void fill_source(int k, double per_dt, Given through, double* plane);
-  void keep_correction(int k, const double* plane);
+  void fill_source(int k, double per_dt, Given through, const CellRows& b);
   StepReport correct(double dt);
   StepReport report_of(double dt, const RowMotion& motion) const;
   [[noreturn]] void report_not_finite() const;

@@ -147,11 +147,11 @@ StepReport Flow::project_cells(double dt) {
   exchange_planes(slab_, velocity_[2], 1);
   krylov_->set_floor(krylov_->tolerance() * largest_predicted() * parameters_.density / (dt * slab_.grid.h));
   krylov_->solve(
-      [&](int k, double* plane) {
-        fill_source(k, 1 / dt, Given::velocity, plane);
-        if (!keep_pressure_) openings_->add_known_pressure(k, openings_->pressures(), plane);
+      [&](int k, const CellRows& b) {
+        fill_source(k, 1 / dt, Given::velocity, b);
+        if (!keep_pressure_) openings_->add_known_pressure(k, openings_->pressures(), b);
       },
-      [&](int k, const double* plane) { keep_correction(k, plane); });
+      correction_);
   fill_phi_ghosts(correction_, keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_);
   StepReport report = correct_cells(dt);
   if (!std::isfinite(report.kinetic_energy)) report_not_finite();

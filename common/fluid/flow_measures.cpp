@@ -117,7 +117,7 @@ double Flow::divergence() const {
   if (parameters_.order == 4) {
     std::vector<double> plane(grid.plane_cells());
     for (int k = 0; k < slab_.planes; ++k) {
-      fill_source_fourth_order(k, 1 / parameters_.density, plane.data());
+      fill_source_fourth_order(k, 1 / parameters_.density, {plane.data(), slab_.grid.cells[0]});
       for (double value : plane) largest = std::max(largest, std::abs(value));
     }
     return mpi::max(slab_.comm, largest);

@@ -22,8 +22,8 @@ void Flow::constrain(FaceField& velocity, Planes within) {
   const Planes of_cells{std::max(within.from, 1) - 1, within.to};
   velocity_.swap(velocity);
   exchange_planes(slab_, velocity_[2], 1);
-  poisson_->solve([&](int k, double* plane) { fill_source(k, 1, Given::nothing, plane); },
-                  [&](int k, const double* plane) { keep_correction(k, plane); }, of_cells);
+  poisson_->solve([&](int k, const CellRows& b) { fill_source(k, 1, Given::nothing, b); }, correction_,
+                  of_cells);
   fill_phi_ghosts(correction_, {0, 0});
   const double factor = 1 / (parameters_.density * slab_.grid.h);
   const std::array<std::ptrdiff_t, 3> stride{1, slab_.stride_y, slab_.stride_z};
@@ -40,13 +40,7 @@ void Flow::constrain(FaceField& velocity, Planes within) {
   velocity_.swap(velocity);
 }
 
-void Flow::keep_correction(int k, const double* plane) {
-  const int nx = slab_.grid.cells[0];
-  for (int j = 0; j < slab_.grid.cells[1]; ++j)
-    std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, correction_.row(j, k));
-}
-
-void Flow::fill_source(int k, double per_dt, Given through, double* plane) {
+void Flow::fill_source(int k, double per_dt, Given through, const CellRows& source) {
   const double given = through == Given::velocity ? 1 : 0;
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const double factor = parameters_.density * per_dt / slab_.grid.h;
@@ -63,13 +57,13 @@ void Flow::fill_source(int k, double per_dt, Given through, double* plane) {
     u[nx] = boundaries_.periodic(0) ? u[0] : given * boundaries_.inflow[0][1].at(0, j, k);
     const double* v = velocity_[1].row(j, k);
     const double* w = velocity_[2].row(j, k);
-    double* b = plane + static_cast<std::size_t>(j) * nx;
+    double* b = source.row(j);
 #pragma omp simd
     for (int i = 0; i < nx; ++i)
       b[i] = factor * ((u[i + 1] - u[i]) + (v[i + sy] - v[i]) + (w[i + sz] - w[i]));
   }
   for (const Solids::CutCell& cell : solids_.cut_cells(k))
-    plane[cell.place] = factor * cell.difference(faces_of(cell.place, k), {1, sy, sz});
+    source(cell.place % nx, cell.place / nx) = factor * cell.difference(faces_of(cell.place, k), {1, sy, sz});
 }
 
 StepReport Flow::project(double dt) {
@@ -82,10 +76,10 @@ StepReport Flow::project(double dt) {
     exchange_planes(slab_, velocity_[2], 1);
   }
   poisson_->solve(
-      [&](int k, double* plane) {
-        fourth ? fill_source_fourth_order(k, 1 / dt, plane) : fill_source(k, 1 / dt, Given::velocity, plane);
+      [&](int k, const CellRows& b) {
+        fourth ? fill_source_fourth_order(k, 1 / dt, b) : fill_source(k, 1 / dt, Given::velocity, b);
       },
-      [&](int k, const double* plane) { keep_correction(k, plane); });
+      correction_);
   const std::array<double, 2> ends = keep_pressure_ ? std::array<double, 2>{0, 0} : end_pressure_;
   fill_phi_ghosts(correction_, ends);
   StepReport report = fourth ? correct_fourth_order(dt) : correct(dt);
@@ -95,7 +89,7 @@ StepReport Flow::project(double dt) {
   return report;
 }
 
-void Flow::fill_source_fourth_order(int k, double per_dt, double* plane) const {
+void Flow::fill_source_fourth_order(int k, double per_dt, const CellRows& source) const {
   const int nx = slab_.grid.cells[0], ny = slab_.grid.cells[1];
   const double factor = parameters_.density * per_dt / slab_.grid.h;
   const std::ptrdiff_t sy = slab_.stride_y, sz = slab_.stride_z;
@@ -103,7 +97,7 @@ void Flow::fill_source_fourth_order(int k, double per_dt, double* plane) const {
     const double* u = velocity_[0].row(j, k) + 1;
     const double* v = velocity_[1].row(j, k) + sy;
     const double* w = velocity_[2].row(j, k) + sz;
-    double* b = plane + static_cast<std::size_t>(j) * nx;
+    double* b = source.row(j);
 #pragma omp simd
     for (int i = 0; i < nx; ++i)
       b[i] = factor * (fourth_order::difference(u + i, 1) + fourth_order::difference(v + i, sy) +

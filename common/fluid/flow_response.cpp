@@ -29,19 +29,18 @@ const Field& Flow::unit_pressure(const PressurePlace& place) {
   krylov_->load_start(zero);
   krylov_->set_floor(0);
   krylov_->solve(
-      [&](int k, double* plane) {
-        std::fill_n(plane, slab_.grid.plane_cells(), 0.0);
-        openings_->add_known_pressure(k, known, plane);
+      [&](int k, const CellRows& b) {
+        for (int j = 0; j < ny; ++j) std::fill_n(b.row(j), nx, 0.0);
+        openings_->add_known_pressure(k, known, b);
         if (!end) return;
         const bool low = *end == End::low;
         if (low ? !(slab_.is_lowest() && k == 0) : !(slab_.is_highest() && k == slab_.planes - 1)) return;
         const std::uint8_t* owner = solids_.owner_row(2, 0, low ? 0 : slab_.planes);
-        for (int at = 0; at < nx * ny; ++at) plane[at] -= owner[at] == 0 ? 2 / (h * h) : 0;
+        for (int j = 0; j < ny; ++j) {
+          for (int i = 0; i < nx; ++i) b(i, j) -= *owner++ == 0 ? 2 / (h * h) : 0;
+        }
       },
-      [&](int k, const double* plane) {
-        for (int j = 0; j < ny; ++j)
-          std::copy_n(plane + static_cast<std::size_t>(j) * nx, nx, unit.row(j, k));
-      });
+      unit);
   krylov_->load_start(start);
   return unit;
 }

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <new>
 #include <vector>
 
@@ -60,6 +61,12 @@ struct Slab {
   /// Owned planes of faces w: one more than `planes` on the highest rank of a box that is not periodic.
   int w_planes() const { return planes + (is_highest() && !periodic_z ? 1 : 0); }
   std::size_t size() const { return static_cast<std::size_t>(stride_z) * (planes + 2 * ghosts); }
+};
+
+/// Local planes from <= k < to; those that are not there are left out.
+struct Planes {
+  int from = std::numeric_limits<int>::min(), to = std::numeric_limits<int>::max();
+  bool has(int k) const { return k >= from && k < to; }
 };
 
 /// Memory in which cell 0 of every row begins a cache line, so that whole vectors of a row lie in one line

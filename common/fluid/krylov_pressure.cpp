@@ -316,7 +316,7 @@ void KrylovPressure::assemble(const FaceField& c, const Field& known) {
       matrix_of(slab_.comm, static_cast<PetscInt>(unknowns_.size()), rows, columns, values));
 }
 
-void KrylovPressure::solve(const Source& source, const Sink& sink, Planes) {
+void KrylovPressure::solve(const Source& source, Field& phi, Planes) {
   const int nx = slab_.grid.cells[0];
   const double h2 = slab_.grid.h * slab_.grid.h;
   std::vector<double> plane(slab_.grid.plane_cells());
@@ -325,7 +325,7 @@ void KrylovPressure::solve(const Source& source, const Sink& sink, Planes) {
   double sum = 0;
   std::size_t u = 0;
   for (int k = 0; k < slab_.planes; ++k) {
-    source(k, plane.data());
+    source(k, {plane.data(), nx});
     for (; u < unknowns_.size() && unknowns_[u].k == k; ++u)
       sum += b[u] = -h2 * plane[static_cast<std::size_t>(unknowns_[u].j) * nx + unknowns_[u].i];
   }
@@ -358,10 +358,9 @@ void KrylovPressure::solve(const Source& source, const Sink& sink, Planes) {
   }
   u = 0;
   for (int k = 0; k < slab_.planes; ++k) {
-    std::fill(plane.begin(), plane.end(), 0.0);
+    for (int j = 0; j < slab_.grid.cells[1]; ++j) std::fill_n(phi.row(j, k), nx, 0.0);
     for (; u < unknowns_.size() && unknowns_[u].k == k; ++u)
-      plane[static_cast<std::size_t>(unknowns_[u].j) * nx + unknowns_[u].i] = x[u] - level;
-    sink(k, plane.data());
+      phi(unknowns_[u].i, unknowns_[u].j, k) = x[u] - level;
   }
   require(VecRestoreArrayRead(petsc_->x, &x), "solution");
 }

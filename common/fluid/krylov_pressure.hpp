@@ -52,7 +52,7 @@ class KrylovPressure : public PressureSolver {
   /// The residual's root mean square, in units of b, at which it is good enough.
   void set_floor(double residual) { floor_ = residual; }
   /// NumericalFailure that names the place of the largest residual when it does not converge.
-  void solve(const Source& b, const Sink& phi, Planes within = {}) override;
+  void solve(const Source& b, Field& phi, Planes within = {}) override;
 
   int iterations() const { return iterations_; }  ///< of the last solve
   double tolerance() const { return settings_.tolerance; }

@@ -31,7 +31,6 @@
 #include "fluid/boundary.hpp"
 #include "fluid/convective_flux.hpp"
 #include "fluid/grid.hpp"
-#include "fluid/pressure_solver.hpp"
 
 namespace valsalva::fluid {
 

@@ -301,12 +301,10 @@ void Openings::apply(FaceField& conductance, Field& known) const {
   for (const KnownCell& cell : known_) known(cell.i, cell.j, cell.k) += cell.conductance;
 }
 
-void Openings::add_known_pressure(int k, const std::vector<double>& known, double* plane) const {
+void Openings::add_known_pressure(int k, const std::vector<double>& known, const CellRows& b) const {
   const double h = slab_.grid.h;
   for (const KnownCell& cell : known_) {
-    if (cell.k == k)
-      plane[static_cast<std::size_t>(cell.j) * slab_.grid.cells[0] + cell.i] -=
-          cell.conductance * known[cell.opening] / (h * h);
+    if (cell.k == k) b(cell.i, cell.j) -= cell.conductance * known[cell.opening] / (h * h);
   }
 }
 

@@ -30,6 +30,7 @@
 #include "fluid/boundary.hpp"
 #include "fluid/grid.hpp"
 #include "fluid/momentum.hpp"
+#include "fluid/pressure_solver.hpp"
 #include "fluid/solids.hpp"
 
 namespace valsalva::fluid {
@@ -62,7 +63,7 @@ class Openings {
   void apply(FaceField& conductance, Field& known) const;
   /// What known pressures (of all openings, Pa) add to the plane k of h^-2 times the equation's right-hand
   /// side, where phi is the pressure itself.
-  void add_known_pressure(int k, const std::vector<double>& known, double* plane) const;
+  void add_known_pressure(int k, const std::vector<double>& known, const CellRows& b) const;
   /// Takes a face out of the fluid for good.
   void shut(Solids& solids, int d, int i, int j, int k) const { solids.claim(body_, d, i, j, k); }
   /// Shuts the faces of cells that are not solved for: corners that nothing else joins with the fluid.

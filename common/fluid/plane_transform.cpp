@@ -124,10 +124,8 @@ void PlaneTransform::Direction::unite(const double* in, std::ptrdiff_t in_stride
 PlaneTransform::PlaneTransform(int nx, int ny, bool periodic_x, bool periodic_y)
     : y_(ny, nx, periodic_y), x_(nx, ny, periodic_x) {}
 
-void PlaneTransform::forward(const double* cells, double* modes) {
+void PlaneTransform::forward(double* modes) {
   const int nx = x_.n, ny = y_.n;
-  for (int j = 0; j < ny; ++j)
-    std::copy_n(cells + static_cast<std::size_t>(j) * nx, nx, y_.cells.get() + y_.row[j] * y_.stride);
   y_.clear_padding();
   fftw_execute(y_.to_spectrum.get());
   y_.separate(y_.spectrum.get(), y_.stride, y_.cells.get(), y_.stride);
@@ -139,7 +137,7 @@ void PlaneTransform::forward(const double* cells, double* modes) {
   x_.separate(x_.spectrum.get(), x_.stride, modes, mode_row());
 }
 
-void PlaneTransform::backward(const double* modes, double* cells) {
+void PlaneTransform::backward(const double* modes) {
   const int nx = x_.n, ny = y_.n;
   x_.unite(modes, mode_row(), x_.spectrum.get(), x_.stride);
   fftw_execute(x_.to_cells.get());
@@ -149,8 +147,6 @@ void PlaneTransform::backward(const double* modes, double* cells) {
   y_.clear_padding();
   y_.unite(y_.cells.get(), y_.stride, y_.spectrum.get(), y_.stride);
   fftw_execute(y_.to_cells.get());
-  for (int j = 0; j < ny; ++j)
-    std::copy_n(y_.cells.get() + y_.row[j] * y_.stride, nx, cells + static_cast<std::size_t>(j) * nx);
 }
 
 }  // namespace valsalva::fluid

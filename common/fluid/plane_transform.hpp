@@ -17,6 +17,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "fluid/pressure_solver.hpp"
+
 namespace valsalva::fluid {
 
 class PlaneTransform {
@@ -27,10 +29,12 @@ class PlaneTransform {
   /// Doubles of a row of modes: ny, or one more, which means nothing but stays finite, where ny is odd.
   int mode_row() const { return x_.columns; }
 
-  /// cells: ny rows of nx. modes: nx such rows, the mode (p, q) of x and y at p mode_row() + q.
-  void forward(const double* cells, double* modes);
+  /// The plane that forward() reads and backward() fills; forward() destroys it.
+  CellRows cells() { return {y_.cells.get(), y_.stride, y_.row.data()}; }
+  /// modes: nx such rows, the mode (p, q) of x and y at p mode_row() + q.
+  void forward(double* modes);
   /// The inverse times 4 nx ny.
-  void backward(const double* modes, double* cells);
+  void backward(const double* modes);
 
  private:
   struct Free {

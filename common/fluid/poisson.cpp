@@ -31,7 +31,7 @@ struct Poisson::Impl {
   void make_reduced_system();
   void forward(const Source& b, Planes within);
   void exchange_ends();
-  void backward(const Sink& phi, Planes within);
+  void backward(Field& phi, Planes within);
   void solve_free_mean();
 
   double* plane(std::vector<double>& planes, int step) { return planes.data() + plane_of(step) * modes; }
@@ -44,12 +44,12 @@ struct Poisson::Impl {
   double h;
   bool periodic_z, free_mean, reversed, has_start, has_end;
   PlaneTransform transform;
-  std::size_t modes;                ///< of a plane, with those that only fill its rows
-  std::vector<double> cells, work;  ///< a plane of cells, one of modes
-  std::vector<double> shift;        ///< eigenvalue of each mode
-  std::vector<double> inverse;      ///< of the pivots, plane by plane
-  std::vector<double> reduced;      ///< right-hand side, then forward-eliminated
-  double scale = 1;                 ///< -h^2 and the transforms' normalisation
+  std::size_t modes;            ///< of a plane, with those that only fill its rows
+  std::vector<double> work;     ///< a plane of them
+  std::vector<double> shift;    ///< eigenvalue of each mode
+  std::vector<double> inverse;  ///< of the pivots, plane by plane
+  std::vector<double> reduced;  ///< right-hand side, then forward-eliminated
+  double scale = 1;             ///< -h^2 and the transforms' normalisation
 
   // Values at the ends: x_first = first + gain xs + ..., of this rank, one number a mode.
   std::vector<double> first_value, chain, start_value, end_value;
@@ -71,7 +71,6 @@ Poisson::Impl::Impl(const Slab& slab, const Boundaries& boundaries)
       periodic_z(slab.periodic_z),
       transform(nx, ny, boundaries.periodic(0), boundaries.periodic(1)),
       modes(static_cast<std::size_t>(nx) * transform.mode_row()),
-      cells(slab.grid.plane_cells()),
       work(modes) {
   for (int r = 0; r <= ranks; ++r) {
     firsts.push_back(slab.first_of(r));
@@ -189,8 +188,8 @@ void Poisson::Impl::forward(const Source& b, Planes within) {
   for (int step = 0; step < planes; ++step) {
     const int k = static_cast<int>(plane_of(step));
     if (within.has(k)) {
-      b(k, cells.data());
-      transform.forward(cells.data(), in);
+      b(k, transform.cells());
+      transform.forward(in);
     } else {
       std::fill_n(in, modes, 0.0);
     }
@@ -253,7 +252,7 @@ void Poisson::Impl::exchange_ends() {
   }
 }
 
-void Poisson::Impl::backward(const Sink& phi, Planes within) {
+void Poisson::Impl::backward(Field& phi, Planes within) {
   if (has_start) {
     for (int step = 0; step < planes; ++step) {
       const double* pivot = plane(inverse, step);
@@ -279,9 +278,9 @@ void Poisson::Impl::backward(const Sink& phi, Planes within) {
     const int k = static_cast<int>(plane_of(step));
     if (!within.has(k)) continue;
     if (free_mean) std::swap(x[0], mean_mode[k]);
-    transform.backward(x, cells.data());
+    transform.backward(x);
     if (free_mean) std::swap(x[0], mean_mode[k]);
-    phi(k, cells.data());
+    transform.cells().copy_to(phi, k, nx, ny);
   }
 }
 
@@ -311,7 +310,7 @@ Poisson::Poisson(const Slab& slab, const Boundaries& boundaries)
     : impl_(std::make_unique<Impl>(slab, boundaries)) {}
 Poisson::~Poisson() = default;
 
-void Poisson::solve(const Source& b, const Sink& phi, Planes within) {
+void Poisson::solve(const Source& b, Field& phi, Planes within) {
   impl_->forward(b, within);
   if (impl_->has_end) impl_->exchange_ends();
   if (impl_->free_mean) impl_->solve_free_mean();

@@ -24,7 +24,7 @@ class Poisson : public PressureSolver {
   Poisson(const Poisson&) = delete;
   Poisson& operator=(const Poisson&) = delete;
 
-  void solve(const Source& b, const Sink& phi, Planes within = {}) override;
+  void solve(const Source& b, Field& phi, Planes within = {}) override;
 
  private:
   struct Impl;

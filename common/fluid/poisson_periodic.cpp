@@ -29,8 +29,12 @@ double squared_symbol(const std::function<double(double)>& symbol, int m, int n)
 }  // namespace
 
 PeriodicPoisson::PeriodicPoisson(const Slab& slab, const std::function<double(double)>& symbol)
-    : comm_(slab.comm), planes_(slab.planes), nz_(slab.grid.cells[2]) {
-  const int nx = slab.grid.cells[0], ny = slab.grid.cells[1], half = nx / 2 + 1;
+    : comm_(slab.comm),
+      planes_(slab.planes),
+      nx_(slab.grid.cells[0]),
+      ny_(slab.grid.cells[1]),
+      nz_(slab.grid.cells[2]) {
+  const int nx = nx_, ny = ny_, half = nx / 2 + 1;
   modes_ = half * ny;
   for (int r = 0; r <= slab.ranks; ++r)
     mode_first_.push_back(static_cast<int>(static_cast<long>(modes_) * r / slab.ranks));
@@ -76,7 +80,8 @@ void PeriodicPoisson::exchange(const std::complex<double>* from, const std::vect
                 MPI_DOUBLE, comm_);
 }
 
-void PeriodicPoisson::solve(const Source& b, const Sink& phi, Planes) {
+void PeriodicPoisson::solve(const Source& b, Field& phi, Planes) {
+  const CellRows cells(cells_.get(), nx_);
   const int ranks = static_cast<int>(mode_first_.size()) - 1;
   // A bundle: for each rank in turn, the modes that it owns, plane after plane.
   const auto part = [&](int r, int k) {
@@ -84,7 +89,7 @@ void PeriodicPoisson::solve(const Source& b, const Sink& phi, Planes) {
            static_cast<std::size_t>(k) * (mode_first_[r + 1] - mode_first_[r]);
   };
   for (int k = 0; k < planes_; ++k) {
-    b(k, cells_.get());
+    b(k, cells);
     fftw_execute(plane_forward_.get());
     for (int r = 0; r < ranks; ++r)
       std::copy(plane_.get() + mode_first_[r], plane_.get() + mode_first_[r + 1], part(r, k));
@@ -100,7 +105,7 @@ void PeriodicPoisson::solve(const Source& b, const Sink& phi, Planes) {
     for (int r = 0; r < ranks; ++r)
       std::copy_n(part(r, k), mode_first_[r + 1] - mode_first_[r], plane_.get() + mode_first_[r]);
     fftw_execute(plane_backward_.get());
-    phi(k, cells_.get());
+    cells.copy_to(phi, k, nx_, ny_);
   }
 }
 

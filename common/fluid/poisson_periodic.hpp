@@ -22,7 +22,7 @@ class PeriodicPoisson : public PressureSolver {
  public:
   /// symbol: kappa of an angle in (-pi, pi].
   PeriodicPoisson(const Slab& slab, const std::function<double(double)>& symbol);
-  void solve(const Source& b, const Sink& phi, Planes within = {}) override;
+  void solve(const Source& b, Field& phi, Planes within = {}) override;
 
  private:
   struct Free {
@@ -39,7 +39,8 @@ class PeriodicPoisson : public PressureSolver {
                 const std::vector<int>& to_starts) const;
 
   MPI_Comm comm_;
-  int planes_, nz_, modes_, own_, first_;  ///< modes of a plane; those whose z-lines are here, from first_
+  int planes_, nx_, ny_, nz_, modes_, own_,
+      first_;  ///< modes of a plane; those whose z-lines are here, from first_
   std::unique_ptr<double, Free> cells_;
   Modes plane_, lines_;  ///< modes of one plane; z-lines, mode fastest
   std::vector<std::complex<double>> bundle_;

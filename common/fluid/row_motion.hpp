@@ -19,7 +19,7 @@ struct RowMotion {
     speed = std::max(speed, Row(w, count).abs().maxCoeff());
   }
   void add(const double* u, const double* v, const double* w, std::ptrdiff_t count) {
-    for (const double* each : {u, v, w}) add_squares(each, count);
+    squares += (Row(u, count).square() + Row(v, count).square() + Row(w, count).square()).sum();
     add_speed(u, v, w, count);
   }
   void add_speed(const double* u, const double* v, const double* w, std::ptrdiff_t count) {

@@ -16,6 +16,7 @@
 // Explicit: stable for dt < h^2 / (12 (nu + nu_x)).
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "fluid/boundary.hpp"
@@ -53,6 +54,11 @@ class ExtraViscosity {
   void add(const FaceField& velocity, double weight, FaceField& rate, FaceField& next) const;
 
  private:
+  using Rows = std::array<const double*, 3>;  ///< of the velocity's components
+  void add_thinning(const CarreauYasuda& law, const Rows& u, double* nu) const;
+  void add_eddies(const Rows& u, double* nu) const;
+  void add_row(int d, const std::array<int, 3>& from, const FaceField& velocity, double weight, double* rate,
+               double* next) const;
   void fill_ghosts();
 
   const Slab& slab_;

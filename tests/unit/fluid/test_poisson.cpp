@@ -45,12 +45,13 @@ TEST_P(PoissonSides, LaplacianOfTheSolutionIsTheRightHandSide) {
   Field phi(slab);
   Poisson poisson(slab, boundaries);
   const std::size_t plane_cells = grid.plane_cells();
-  poisson.solve([&](int k, double* plane) { std::copy_n(b.data() + k * plane_cells, plane_cells, plane); },
-                [&](int k, const double* plane) {
-                  for (int j = 0; j < grid.cells[1]; ++j) {
-                    std::copy_n(plane + j * grid.cells[0], grid.cells[0], phi.row(j, k));
-                  }
-                });
+  const int nx = grid.cells[0];
+  poisson.solve(
+      [&](int k, const CellRows& rows) {
+        for (int j = 0; j < grid.cells[1]; ++j)
+          std::copy_n(b.data() + k * plane_cells + j * nx, nx, rows.row(j));
+      },
+      phi);
   fill_pressure_ghosts(slab, boundaries, phi, {0, 0});
   double worst = 0, sum = 0;
   for (int k = 0; k < grid.cells[2]; ++k) {
