@@ -233,6 +233,9 @@ def main():
     options = parser.parse_args()
     if unknown := [knob for knob in options.knobs if knob not in KNOBS]:
         parser.error(f"--knobs: '{unknown[0]}' is none of {', '.join(KNOBS)}")
+    known = [value for knob in options.knobs for value, _ in KNOBS[knob]]
+    if unknown := [value for value in options.values if value not in known]:
+        parser.error(f"--values: '{unknown[0]}' is none of {', '.join(known)}")
     stages.BIN = runs.BIN
     source = runs.provenance()
     rows, before = tradeoff.read(options.out / "cycle-tradeoff.csv")

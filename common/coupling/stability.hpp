@@ -12,7 +12,8 @@
 //   - Convection (AB2) lags behind the structure (symplectic Euler) and feeds a mode that the flow carries
 //     along: with theta = k |u| dt and dt sqrt(lambda) = 2 sin(phi/2) by theta (1 - cos phi)^2 / (2 sin phi)
 //     a step. Forces of the shape a dt ahead, F(x + a dt U), take a (dt sqrt(lambda))^2 / 2 a step out of it,
-//     and lower the limit to 2 / sqrt(lambda (1 + 2 a)).
+//     and lower the limit to 2 / sqrt(lambda (1 + 2 a)). a = 0.25; where nothing flows there is nothing to
+//     take out, and leaflets' forces lead by 0.05 only (lead_at).
 //   - Where the flow is fast that is not enough: dt^2 = limit^2 (1 - 2 CFL) keeps all waves of five cells and
 //     more from growing, at any CFL number up to 0.35.
 //   - Waves of three and four cells, of a fold beside the attachment, still grow by a percent a step or so;
