@@ -35,6 +35,7 @@ Parameters read_parameters(const Case& scene) {
   p.fluid.density = scene.real("fluid.density_g_per_mm3");
   p.fluid.viscosity = scene.real("fluid.viscosity_Pa_s");
   p.fluid.wall = fluid::wall_from(scene.text("fluid.wall"));
+  p.fluid.wall_upwind = scene.text("fluid.wall_convection") == "upwind1";
   p.fluid.implicit_viscosity = scene.text("fluid.viscosity_scheme") == "implicit";
   if (scene.text("fluid.subgrid") == "vreman")
     p.fluid.extra_viscosity.vreman = scene.real("fluid.vreman_constant");

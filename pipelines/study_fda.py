@@ -2,6 +2,7 @@
 
     python3 pipelines/study_fda.py --reynolds 500 --cells 8 12
     python3 pipelines/study_fda.py --reynolds 3500 --cells 8 12 16 --convection weno5 --subgrid vreman --ranks 2
+    python3 pipelines/study_fda.py --reynolds 3500 --cells 8 12 --convection weno5 --subgrid vreman --wall-convection upwind1
     python3 pipelines/study_fda.py                       only writes tables and picture anew from the runs there are
 
 Runs lie in runs/study-fda. Written to docs/results: fda-nozzle.csv (one row a run), fda-nozzle-stations.csv (one row a
@@ -31,7 +32,7 @@ SPAN_S = {500: (0.8, 1.0), 3500: (0.15, 0.3)}  # averaged
 JET_MM = {500: 120, 3500: 40}  # length of the jet at the start
 
 
-def values_of(reynolds, cells, convection, wall, subgrid, span_s):
+def values_of(reynolds, cells, convection, wall, subgrid, wall_convection, span_s):
     """What a run sets besides what stands in the case file."""
     h = THROAT_MM / cells
     off = 1.25 * h
@@ -39,6 +40,7 @@ def values_of(reynolds, cells, convection, wall, subgrid, span_s):
     along = f"2 * {FLOW_MM3_PER_S[reynolds]} / pi * max(0, {a}^2 - x^2 - y^2) / {a}^4"
     line = lambda from_z, to_z, from_r, to_r: f"[{from_r - off:.6g}, 0, {from_z}, {to_r - off:.6g}, 0, {to_z}]"
     return {"fluid.grid_mm": f"{h:.17g}", "fluid.convection": convection, "fluid.wall": wall, "fluid.subgrid": subgrid,
+            "fluid.wall_convection": wall_convection,
             "fluid.average_from_s": str(span_s[0]), "fluid.end_s": str(span_s[1]),
             "fluid.history_rows": "500", "fluid.cfl": "0.45",
             "boundary.in.flow_mL_per_s": str(FLOW_MM3_PER_S[reynolds] / 1000),
@@ -122,7 +124,11 @@ def described(folder, note):
 
 def label(study):
     words = [f"{study['cells']} cells", study["convection"], study["wall"]]
-    return ", ".join(words + ([study["subgrid"]] if study["subgrid"] != "none" else []))
+    if study["subgrid"] != "none":
+        words.append(study["subgrid"])
+    if study["wall_convection"] != "as_inside":
+        words.append(f"{study['wall_convection']} beside walls")
+    return ", ".join(words)
 
 
 def picture(runs, path):
@@ -155,6 +161,7 @@ def main():
     parser.add_argument("--convection", default="upwind3")
     parser.add_argument("--wall", default="interpolated")
     parser.add_argument("--subgrid", default="none")
+    parser.add_argument("--wall-convection", default="as_inside")
     parser.add_argument("--span", type=float, nargs=2, help="times between which to average, s; otherwise 0.8 1 and 0.15 0.3")
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--again", action="store_true", help="repeat what is finished")
@@ -163,13 +170,14 @@ def main():
     for reynolds in asked.reynolds:
         for cells in asked.cells:
             study = {"reynolds": reynolds, "cells": cells, "convection": asked.convection, "wall": asked.wall,
-                     "subgrid": asked.subgrid}
+                     "subgrid": asked.subgrid, "wall_convection": asked.wall_convection}
             folder = RUNS / "-".join(str(v) for v in study.values())
             note = flow_runs.run("fluid-fda-nozzle", folder, values_of(**study, span_s=asked.span or SPAN_S[reynolds]),
                                  asked.ranks, asked.again)
             (folder / "study.json").write_text(json.dumps(note | {"study": study}, indent=1))
     runs = [described(folder, note) for folder, note in flow_runs.finished(
-        RUNS, lambda study: (study["reynolds"], study["cells"], study["convection"], study["wall"], study["subgrid"]))]
+        RUNS, lambda study: (study["reynolds"], study["cells"], study["convection"], study["wall"], study["subgrid"],
+                             study["wall_convection"]))]
     if not runs:
         parser.error("no run yet; give --reynolds and --cells")
     for row, _, _ in runs:

@@ -77,6 +77,7 @@ fluid::FlowParameters parameters_of(const Case& scene, const Sides& sides) {
                      : fluid::Convection::conserving4;
   p.penalisation_s = scene.real("fluid.penalisation_s");
   p.wall = fluid::wall_from(scene.text("fluid.wall"));
+  p.wall_upwind = scene.text("fluid.wall_convection") == "upwind1";
   p.implicit_viscosity = scene.text("fluid.viscosity_scheme") == "implicit";
   if (scene.text("fluid.subgrid") == "vreman") p.extra_viscosity.vreman = scene.real("fluid.vreman_constant");
   if (scene.text("fluid.viscosity_model") == "carreau-yasuda")

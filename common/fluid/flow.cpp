@@ -68,6 +68,10 @@ Flow::Flow(MPI_Comm comm, const Grid& grid, const Boundaries& boundaries, const 
     extra_viscosity_ = std::make_unique<ExtraViscosity>(slab_, boundaries_, parameters.extra_viscosity,
                                                         parameters.viscosity, parameters.density);
   }
+  if (parameters.wall_upwind) {
+    if (parameters.order == 4) throw InputError("fluid: upwinding beside walls is of order 2; use order 2");
+    wall_upwind_ = std::make_unique<WallUpwind>(slab_, boundaries_);
+  }
   if (parameters.krylov) {
     krylov_ = static_cast<KrylovPressure*>(poisson_.get());
     openings_ = std::make_unique<Openings>(slab_, parameters.viscosity / parameters.density);
@@ -243,6 +247,10 @@ void Flow::advance(Advance step, const PredictOptions& options) {
   if (extra_viscosity_) {
     extra_viscosity_->update(velocity_);
     extra_viscosity_->add(velocity_, step.dt * step.weight_new, rate_, next_);
+  }
+  if (wall_upwind_) {
+    wall_upwind_->update(solids_);
+    wall_upwind_->add(velocity_, step.dt * step.weight_new, rate_, next_);
   }
   if (krylov_) openings_->advance(velocity_, step, rate_, next_);
   apply_inflow(next_);

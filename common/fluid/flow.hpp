@@ -54,6 +54,7 @@
 #include "fluid/row_motion.hpp"
 #include "fluid/solids.hpp"
 #include "fluid/viscosity.hpp"
+#include "fluid/wall_upwind.hpp"
 #include "state/state.hpp"
 
 namespace valsalva::fluid {
@@ -67,6 +68,7 @@ struct FlowParameters {
   int order = 2;                    ///< in space; 4 only in boxes periodic in all directions
   bool implicit_viscosity = false;  ///< of the constant part (implicit_viscosity.hpp)
   ExtraViscosityParameters extra_viscosity;
+  bool wall_upwind = false;  ///< first-order upwinding beside walls (wall_upwind.hpp)
   /// The pressure of the fluid's cells alone (krylov_pressure.hpp): solids are tight and carry no pressure,
   /// and the vessel may have openings. None: the direct solver, for the whole box.
   std::optional<KrylovSettings> krylov;
@@ -289,6 +291,7 @@ class Flow {
   std::vector<Shell> shell_;
   std::unique_ptr<ImplicitViscosity> implicit_viscosity_;
   std::unique_ptr<ExtraViscosity> extra_viscosity_;  ///< none: the viscosity is constant
+  std::unique_ptr<WallUpwind> wall_upwind_;
   FaceField velocity_, next_, rate_;
   std::optional<FaceField> force_;
   Field pressure_, correction_;

@@ -58,6 +58,10 @@ void declare_fluid(Schema& schema) {
       "fluid.convection", "upwind3", {"upwind3", "centred4", "centred2", "weno5"},
       "Third-order upwind-biased convection; fourth- or second-order centred without dissipation; or limited "
       "(fifth-order WENO), for jets that the grid does not resolve");
+  schema.choice(
+      "fluid.wall_convection", "as_inside", {"as_inside", "upwind1"},
+      "Beside walls: as elsewhere, or with first-order upwinding more, which ends motions there that "
+      "coarse grids carry on");
   schema.real(
       "fluid.penalisation_s", 1e-8, {1e-12, 1e-5},
       "Time constant of solid faces; a solid lets velocity penalisation/density x pressure gradient through");

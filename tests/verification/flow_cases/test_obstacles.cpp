@@ -79,7 +79,7 @@ point_mm = [0.8, 0.6, 0.1]
 // It is stable, and so has the disturbance to die, beside the wall as well. On coarse grids it does not
 // (docs/verification/fda-nozzle.md).
 TEST(FlowObstacles, ADisturbedTubeSettles) {
-  const auto lateral = [](int across, const std::string& wall) {
+  const auto lateral = [](int across, const std::string& wall, const std::string& beside = "as_inside") {
     FlowRun run(R"toml(
 [fluid]
 box_mm = [-3, -3, 0, 3, 3, 12]
@@ -108,14 +108,18 @@ name = "beside_the_wall"
 quantity = "velocity"
 point_mm = [1.7, 0, 6]
 )toml",
-                {fmt::format("fluid.cells=[{},{},{}]", across, across, 2 * across), "fluid.wall=" + wall});
+                {fmt::format("fluid.cells=[{},{},{}]", across, across, 2 * across), "fluid.wall=" + wall,
+                 "fluid.wall_convection=" + beside});
     run.to_end();
     return std::hypot(run.metric("beside_the_wall_x_mm_per_s"), run.metric("beside_the_wall_y_mm_per_s"));
   };
   for (const char* wall : {"interpolated", "staircase"}) {
-    const double coarse = lateral(12, wall), fine = lateral(24, wall);
-    std::printf("%s: %.2g mm/s with 8 cells across the tube, %.2g with 16\n", wall, coarse, fine);
+    const double coarse = lateral(12, wall), fine = lateral(24, wall),
+                 upwind = lateral(12, wall, "upwind1");
+    std::printf("%s: %.2g mm/s with 8 cells across the tube, %.2g with 16; 8 cells and upwind1 %.2g\n", wall,
+                coarse, fine, upwind);
     EXPECT_LT(fine, 1e-3);
+    EXPECT_LT(upwind, 0.15 * coarse);
   }
 }
 
