@@ -101,7 +101,7 @@ TEST(InterpolatedWall, PoiseuilleConvergesAtSecondOrderWithItsShearStress) {
 
 // A plane channel, tilted by 1 : 2 against the grid, so that every wall cell is cut in another way and no
 // face lies on the wall: periodic in x and z, where the channel leaves on one side and enters on the other.
-double tilted_channel(int n, Wall wall) {
+double tilted_channel(int n, Wall wall, bool upwind = false) {
   const double length = 20, half = 3, gradient = 0.5;
   Grid grid;
   grid.h = 0.5 * length / n;
@@ -112,6 +112,7 @@ double tilted_channel(int n, Wall wall) {
   parameters.density = density;
   parameters.viscosity = 5 * viscosity;
   parameters.wall = wall;
+  parameters.wall_upwind = upwind;
   Flow flow(MPI_COMM_SELF, grid, boundaries, parameters);
   const Vec3 along = Vec3(1, 0, 2).normalized(), across = Vec3(2, 0, -1).normalized();
   const double pitch = 0.5 * length * across[0];
@@ -140,8 +141,8 @@ double tilted_channel(int n, Wall wall) {
       }
     }
   }
-  std::printf("tilted, %d cells, %s: %.3e\n", n, wall == Wall::staircase ? "staircase" : "interpolated",
-              std::sqrt(error / size));
+  std::printf("tilted, %d cells, %s%s: %.3e\n", n, wall == Wall::staircase ? "staircase" : "interpolated",
+              upwind ? ", upwind1 beside it" : "", std::sqrt(error / size));
   return std::sqrt(error / size);
 }
 
@@ -151,6 +152,15 @@ TEST(InterpolatedWall, TiltedChannelConvergesAtSecondOrder) {
   std::printf("orders %.2f %.2f\n", std::log2(coarse / middle), std::log2(middle / fine));
   EXPECT_GT(0.5 * std::log2(coarse / fine), 1.7);
   EXPECT_LT(middle, 0.3 * tilted_channel(32, Wall::staircase));
+}
+
+// Of first order in a layer of one cell: it takes nothing from the order of the whole.
+TEST(InterpolatedWall, TiltedChannelStaysOfSecondOrderWithUpwindingBesideIt) {
+  const double coarse = tilted_channel(16, Wall::interpolated, true),
+               middle = tilted_channel(32, Wall::interpolated, true),
+               fine = tilted_channel(64, Wall::interpolated, true);
+  std::printf("orders %.2f %.2f\n", std::log2(coarse / middle), std::log2(middle / fine));
+  EXPECT_GT(0.5 * std::log2(coarse / fine), 1.7);
 }
 
 std::complex<double> bessel(int order, std::complex<double> z) {

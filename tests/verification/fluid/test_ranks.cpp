@@ -23,6 +23,7 @@ struct Scene {
   int order = 2;
   bool thinning = false;  // Carreau-Yasuda blood and a subgrid model
   bool smooth = false;    // interpolated wall of a tilted tube
+  bool upwind = false;    // first-order upwinding beside walls
 };
 
 void PrintTo(const Scene& scene, std::ostream* out) {
@@ -40,6 +41,7 @@ std::unique_ptr<Flow> make(MPI_Comm comm, const Scene& scene) {
   parameters.order = scene.order;
   if (scene.order == 4) parameters.convection = Convection::centred4;
   if (scene.smooth) parameters.wall = Wall::interpolated;
+  parameters.wall_upwind = scene.upwind;
   if (scene.thinning) parameters.extra_viscosity = {.carreau_yasuda = CarreauYasuda{}, .vreman = 0.07};
   auto flow = std::make_unique<Flow>(comm, grid, boundaries, parameters);
   if (scene.tube) {
@@ -154,7 +156,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Scene{"thinning", Side::slip, Side::wall, Side::inflow, Side::open, true, 2, true},
                     Scene{"smooth", Side::slip, Side::slip, Side::open, Side::open, true, 2, false, true},
                     Scene{"order4", Side::periodic, Side::periodic, Side::periodic, Side::periodic, false, 4},
-                    Scene{"pipe", Side::slip, Side::slip, Side::periodic, Side::periodic, true}),
+                    Scene{"pipe", Side::slip, Side::slip, Side::periodic, Side::periodic, true},
+                    Scene{"upwind", Side::wall, Side::slip, Side::wall, Side::open, true, 2, false, true,
+                          true},
+                    Scene{"upwind_pipe", Side::slip, Side::wall, Side::periodic, Side::periodic, true, 2,
+                          false, false, true}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
