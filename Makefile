@@ -65,7 +65,9 @@ extremes: build
 
 studies: build
 	python3 pipelines/study_taylor_green.py --cells 32 64 96 128 --schemes conserving4 upwind3 $(if $(NP),--ranks $(NP))
-	python3 pipelines/study_fda.py --reynolds 500 3500 --cells 8 12 16 $(if $(NP),--ranks $(NP))
+	python3 pipelines/study_fda.py --reynolds 500 --cells 8 10 12 --wall-convection upwind1 $(if $(NP),--ranks $(NP))
+	python3 pipelines/study_fda.py --reynolds 3500 --cells 8 12 --convection weno5 --wall-convection upwind1 \
+	  --span 0.15 0.9 $(if $(NP),--ranks $(NP))
 	python3 pipelines/study_turek_hron.py --cases fsi1 fsi2 fsi3 --cells 82
 	python3 pipelines/study_closed_valve.py --h 1 0.75 0.5 $(if $(NP),--ranks $(NP))
 

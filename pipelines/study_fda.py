@@ -1,8 +1,8 @@
 """FDA nozzle (pipelines/cases/fluid-fda-nozzle.toml) at Reynolds numbers and grids of choice, against the laboratories.
 
-    python3 pipelines/study_fda.py --reynolds 500 --cells 8 12
+    python3 pipelines/study_fda.py --reynolds 500 --cells 8 12 --wall-convection upwind1
     python3 pipelines/study_fda.py --reynolds 3500 --cells 8 12 16 --convection weno5 --subgrid vreman --ranks 2
-    python3 pipelines/study_fda.py --reynolds 3500 --cells 8 12 --convection weno5 --subgrid vreman --wall-convection upwind1
+    python3 pipelines/study_fda.py --reynolds 3500 --cells 12 --convection weno5 --wall-convection upwind1 --span 0.15 0.9
     python3 pipelines/study_fda.py                       only writes tables and picture anew from the runs there are
 
 Runs lie in runs/study-fda. Written to docs/results: fda-nozzle.csv (one row a run), fda-nozzle-stations.csv (one row a
@@ -123,7 +123,7 @@ def described(folder, note):
 
 
 def label(study):
-    words = [f"{study['cells']} cells", study["convection"], study["wall"]]
+    words = [f"{study['cells']} cells", study["convection"]] + ([study["wall"]] if study["wall"] != "interpolated" else [])
     if study["subgrid"] != "none":
         words.append(study["subgrid"])
     if study["wall_convection"] != "as_inside":
@@ -145,11 +145,12 @@ def picture(runs, path):
                               linewidth=1, capsize=2, label="laboratories: mean, two standard deviations")
             for row, _, lines in runs:
                 if row["reynolds"] == reynolds:
-                    axis.plot(*lines[2 * down:2 * down + 2], linewidth=1, label=label(row))
+                    style = "--" if row["wall_convection"] == "as_inside" else "-"
+                    axis.plot(*lines[2 * down:2 * down + 2], style, linewidth=1, label=label(row))
             axis.set(title=f"Re = {reynolds}" if down == 0 else None, xlabel="z, mm", ylabel=name, xlim=(-95, 102))
             axis.grid(alpha=0.3)
-            if down == 0:
-                axis.legend(fontsize=6.5)
+            if down == 1:  # where there is room
+                axis.legend(fontsize=6.5, loc="upper right")
     figure.tight_layout()
     figure.savefig(path, dpi=80)
 
