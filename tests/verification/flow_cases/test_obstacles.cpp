@@ -114,8 +114,7 @@ point_mm = [1.7, 0, 6]
     return std::hypot(run.metric("beside_the_wall_x_mm_per_s"), run.metric("beside_the_wall_y_mm_per_s"));
   };
   for (const char* wall : {"interpolated", "staircase"}) {
-    const double coarse = lateral(12, wall), fine = lateral(24, wall),
-                 upwind = lateral(12, wall, "upwind1");
+    const double coarse = lateral(12, wall), fine = lateral(24, wall), upwind = lateral(12, wall, "upwind1");
     std::printf("%s: %.2g mm/s with 8 cells across the tube, %.2g with 16; 8 cells and upwind1 %.2g\n", wall,
                 coarse, fine, upwind);
     EXPECT_LT(fine, 1e-3);
