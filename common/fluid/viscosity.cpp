@@ -126,7 +126,7 @@ void ExtraViscosity::add(const FaceField& velocity, double weight, FaceField& ra
 // With d the component, e and f the other two directions.
 void ExtraViscosity::add_row(int d, const std::array<int, 3>& from, const FaceField& velocity, double weight,
                              double* __restrict rate, double* __restrict next) const {
-  const auto [from_i, j, k] = from;
+  const int j = from[1], k = from[2];
   const std::array<std::ptrdiff_t, 3> stride{1, slab_.stride_y, slab_.stride_z};
   const int e = (d + 1) % 3, f = (d + 2) % 3;
   const std::ptrdiff_t sd = stride[d], se = stride[e], sf = stride[f];
@@ -141,7 +141,7 @@ void ExtraViscosity::add_row(int d, const std::array<int, 3>& from, const FaceFi
            below * (q[i] - q[i - t] + c[i] - c[i - sd]);
   };
 #pragma omp simd
-  for (int i = from_i; i < slab_.grid.cells[0]; ++i) {
+  for (int i = from[0]; i < slab_.grid.cells[0]; ++i) {
     const double along = 2 * (nu[i] * (q[i + sd] - q[i]) - nu[i - sd] * (q[i] - q[i - sd]));
     const double sum = along + shear(r, se, i) + shear(s, sf, i);
     rate[i] += per_h2 * sum;

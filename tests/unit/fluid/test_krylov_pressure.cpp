@@ -17,7 +17,7 @@ namespace {
 using Values = std::vector<double>;
 
 Values solved(PressureSolver& solver, const Slab& slab, const Values& b) {
-  const auto [nx, ny, nz] = slab.grid.cells;
+  const int nx = slab.grid.cells[0], ny = slab.grid.cells[1], nz = slab.grid.cells[2];
   Field phi(slab);
   solver.solve(
       [&](int k, const CellRows& rows) {
