@@ -52,7 +52,7 @@ KNOBS = {
                      ("0.35 mm", {"leaflet_edge_mm": "0.35"})],
     "kernel": [(name, {"cycle.kernel": name}) for name in ("ib3", "bspline3", "bspline4", "cbs32", "cbs43")],
     "coupling": [("no standoff", {"cycle.standoff_cells": "0"}), ("no repulsion", {"cycle.repulsion_kPa": "0"})],
-    "wall": [("interpolated", {"fluid.wall": "interpolated"})],
+    "wall": [("interpolated", {"fluid.wall": "interpolated"}), ("upwind1", {"fluid.wall_convection": "upwind1"})],
     "step safety": [(value, {"cycle.step_safety": value}) for value in ("0.6", "0.3")],
     "largest step": [("30 us", {"cycle.max_step_s": "3e-5"})],
     "convection": [(name, {"fluid.convection": name}) for name in ("weno5", "centred4")],
